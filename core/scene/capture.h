@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// CaptureSet: what a capture is, as understood by the importer, in the house's world (right-handed, +Y up, metres).
+// Pictures are read from disk when asked for; nothing is ever written into a capture.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image/image.h"
+#include "core/scene/camera.h"
+#include "core/scene/ids.h"
+
+namespace beam {
+
+enum class Split {
+  Train,
+  Test,  // held out: never used for fitting
+};
+
+struct View {
+  std::string name;
+  Camera camera;
+  Split split = Split::Train;
+};
+
+struct PointCloud {
+  std::vector<vec3> position_m;
+  std::vector<u8vec3> color;  // sRGB; empty or one per point
+};
+
+// Reads pictures of a capture. Implementations are safe to call from several threads.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  // Whether the picture exists in the capture.
+  virtual bool has(ViewIndex view, FrameIndex frame) const = 0;
+  // The photograph as stored, sRGB-encoded. Throws Error{Data} with the file's name when it cannot be read or has
+  // another size than the view's camera.
+  virtual Image<u8vec3> photo(ViewIndex view, FrameIndex frame) const = 0;
+  // Coverage of the subject, 255 = inside; empty where the capture has no masks.
+  virtual Image<std::uint8_t> mask(ViewIndex view, FrameIndex frame) const = 0;
+};
+
+enum class UpAxis { PlusY, PlusZ, MinusY };
+
+struct CaptureSet {
+  std::string name;
+  std::vector<View> views;
+  std::vector<std::string> frames;  // the capture's own frame names, in order
+  double frames_per_second = 30;
+  bool has_masks = false;
+  PointCloud seed_points;                       // in world axes; may be empty
+  std::optional<std::string> environment_file;  // path of the capture's panorama
+  UpAxis up = UpAxis::PlusY;                    // of the capture's own axes
+  std::shared_ptr<const FrameSource> source;
+};
+
+// world_from_capture of an up axis: a permutation with signs (contract: axes and light).
+dmat3 worldFromCapture(UpAxis up);
+
+}  // namespace beam

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/frame_views.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/base/parallel.h"
+
+namespace beam {
+namespace {
+
+// Mean of factor x factor blocks, rounded; pixels beyond the last whole block are dropped.
+template <class T, class Sum>
+Image<T> shrink(const Image<T>& in, int factor) {
+  Image<T> out(in.width / factor, in.height / factor, T{}, in.encoding);
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      Sum sum{};
+      for (int j = 0; j < factor; ++j) {
+        for (int i = 0; i < factor; ++i) sum += Sum(in(x * factor + i, y * factor + j));
+      }
+      out(x, y) = T((sum + Sum(factor * factor / 2)) / Sum(factor * factor));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split, int downscale) {
+  std::vector<FrameView> loaded(capture.views.size());
+  std::vector<std::string> problem(capture.views.size());
+  parallelFor(capture.views.size(), 1, [&](std::size_t i, std::size_t) {
+    const View& view = capture.views[i];
+    const ViewIndex index{static_cast<std::int32_t>(i)};
+    if (view.split != split || !capture.source->has(index, frame)) return;
+    try {
+      FrameView v{view.name, view.camera, capture.source->photo(index, frame), capture.source->mask(index, frame)};
+      if (downscale > 1) {
+        v.camera = scaledDown(v.camera, downscale);
+        v.photo = shrink<u8vec3, ivec3>(v.photo, downscale);
+        if (!v.mask.empty()) v.mask = shrink<std::uint8_t, int>(v.mask, downscale);
+      }
+      loaded[i] = std::move(v);
+    } catch (const Error& e) {
+      problem[i] = e.what();
+    }
+  });
+  std::vector<FrameView> views;
+  for (std::size_t i = 0; i < loaded.size(); ++i) {
+    if (!problem[i].empty()) logWarning("{}; camera {} is left out of frame {}", problem[i], capture.views[i].name,
+                                        capture.frames[frame.value]);
+    if (!loaded[i].photo.empty()) views.push_back(std::move(loaded[i]));
+  }
+  if (views.size() < 2 && split == Split::Train) {
+    throw Error(Error::Kind::Data, fmt::format("frame {}: expected at least 2 readable training pictures, found {}",
+                                               capture.frames[frame.value], views.size()));
+  }
+  return views;
+}
+
+}  // namespace beam

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a deferred renderer knows of a view, one value a pixel; all images of one size, empty = not asked for.
+#pragma once
+
+#include "core/image/image.h"
+
+namespace beam {
+
+struct GBuffer {
+  Image<float> alpha;              // coverage, [0, 1]
+  Image<float> depth_m;            // median z along the optical axis, 0 where alpha < 0.5
+  Image<vec3> normal_world;        // unit, 0 where alpha < 1/255
+  Image<vec3> radiance;            // sRGB-encoded, composited on black
+  Image<vec3> base_color;          // linear, composited on black: value x alpha
+  Image<float> ambient_occlusion;  // value x alpha
+  Image<float> roughness;          // value x alpha
+};
+
+}  // namespace beam
