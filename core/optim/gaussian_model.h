@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gaussians under optimisation: raw parameters (log scale, logit opacity), the 3D filter, and Adam's moments.
+// The only place that knows the raw form besides the splat PLY dialect.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/render/training_ops.h"
+#include "core/scene/camera.h"
+#include "core/scene/gaussian_cloud.h"
+
+namespace beam {
+
+struct LearningRates {
+  float position_m = 1.6e-4f;  // times the scene extent (methods 1.11)
+  float rotation = 1e-3f;
+  float log_scale = 5e-3f;
+  float opacity_logit = 0.05f;
+  float color_dc = 2.5e-3f;
+  float color_rest = 1.25e-4f;
+};
+
+// Weights of MCMC's regularisers, means over Gaussians (methods 1.12).
+struct Regularizers {
+  float opacity = 0;
+  float scale = 0;
+};
+
+class GaussianModel {
+ public:
+  explicit GaussianModel(const GaussianCloud& cloud);
+
+  std::size_t size() const { return values_.count; }
+  // Physical values with the 3D filter in them, as the rasteriser draws them; call after activate().
+  const GaussianBuffers& physical() const { return values_; }
+  // Raw planes to physical ones: scale sqrt(s^2 + f^2), opacity o sqrt(prod s^2 / (s^2 + f^2)) (methods 1.3).
+  void activate();
+
+  // Sizes of the 3D filter: f = strength * sqrt(0.2) * min over cameras of depth / focal, over cameras that
+  // see the Gaussian within 15 % of their borders; unseen Gaussians take the largest (methods 1.3). 0: no
+  // filter.
+  void updateFilter(std::span<const Camera> cameras, float strength);
+  // Takes the present filter out of the raw values: for a cloud that was made with the filter baked in.
+  void unbakeFilter();
+
+  // Chains dL/d(physical) to the raw parameters (in place) and takes Adam's step `step` (from 1).
+  void step(GaussianBuffers& gradients, const LearningRates& rates, int sh_degree,
+            const Regularizers& regularizers, int step, TrainingOps& ops);
+
+  // Opacity without the filter, in (0, 1).
+  float opacity(std::size_t i) const;
+  // Copies of Gaussians: target[i] becomes a copy of source[i]; targets may lie at or behind size(), up to
+  // `new_size`. Sources and targets then take the opacity and scales of `relocate` (methods 1.12) and lose
+  // their moments.
+  void relocate(std::span<const std::uint32_t> source, std::span<const std::uint32_t> target,
+                std::size_t new_size);
+  // position += covariance * eta * sigmoid(-100 (o - 0.005)) * amount, eta standard normal (MCMC).
+  void addNoise(float amount, std::uint64_t seed, int step);
+  // Keeps the Gaussians whose flag is set.
+  void keep(std::span<const std::uint8_t> flags);
+
+  // Physical values, filter baked in.
+  GaussianCloud cloud() const;
+
+ private:
+  void resize(std::size_t count);
+  float* raw(int k) { return raw_.data() + values_.stride * k; }  // log scale 0-2, logit opacity 3
+  const float* raw(int k) const { return raw_.data() + values_.stride * k; }
+
+  GaussianBuffers values_;    // scale and opacity planes physical, all others are the parameters themselves
+  AlignedVector<float> raw_;  // 4 planes
+  AlignedVector<float> filter_;  // metres
+  GaussianBuffers first_moment_, second_moment_;
+};
+
+// Opacity and scale factor of n composited copies that look like one Gaussian of opacity o (methods 1.12).
+struct Relocation {
+  float opacity = 0;
+  float scale = 1;
+};
+Relocation relocation(float opacity, int copies);
+
+}  // namespace beam

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/prepared_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/math/brdf.h"
+#include "core/math/color.h"
+#include "core/math/sampling.h"
+#include "core/render/deferred.h"
+
+namespace beam {
+namespace {
+
+constexpr int kLutSize = 64;
+constexpr int kLutSamples = 512;
+constexpr int kLevels = 11;         // roughness 0, 0.1 .. 1
+constexpr int kKernelTable = 4096;  // entries over the square root of 1 - cosine
+constexpr float kShTolerance =
+    0.01f;  // of the mean irradiance; beyond it the convolved map serves (methods 7.2)
+constexpr float kHighlightShare = 0.997f;  // of a narrow lobe's energy that is kept
+
+vec2 integrateSplitSum(float n_dot_v, float roughness) {
+  const float alpha = ggxAlpha(std::max(roughness, 0.04f));
+  const vec3 v(std::sqrt(std::max(0.0f, 1 - n_dot_v * n_dot_v)), 0, n_dot_v);
+  dvec2 sum(0);
+  for (std::uint32_t i = 0; i < kLutSamples; ++i) {
+    const vec3 h = visibleNormal(v, alpha, R2Sequence{}(i));
+    const float v_dot_h = glm::dot(v, h);
+    const vec3 l = 2 * v_dot_h * h - v;
+    if (l.z <= 0 || v_dot_h <= 0) continue;
+    // f_s (n.l) / pdf = F G2 / G1 for visible normals (methods 5.4).
+    const float g = smithG2(l.z, v.z, alpha) / smithG1(v.z, alpha);
+    const float m = 1 - v_dot_h, fresnel = m * m * m * m * m;
+    sum += dvec2((1 - fresnel) * g, fresnel * g);
+  }
+  return vec2(sum / static_cast<double>(kLutSamples));
+}
+
+// Rows follow the roughness, columns the square root of n.v: most changes at grazing angles.
+const std::vector<vec2>& splitSumTable() {
+  static const std::vector<vec2> table = [] {
+    std::vector<vec2> t(kLutSize * kLutSize);
+    for (int y = 0; y < kLutSize; ++y) {
+      for (int x = 0; x < kLutSize; ++x) {
+        const float c = static_cast<float>(x) / (kLutSize - 1);
+        t[y * kLutSize + x] =
+            integrateSplitSum(std::max(c * c, 1e-4f), static_cast<float>(y) / (kLutSize - 1));
+      }
+    }
+    return t;
+  }();
+  return table;
+}
+
+vec3 turned(vec3 d, float yaw) {
+  const float c = std::cos(yaw), s = std::sin(yaw);
+  return {c * d.x + s * d.z, d.y, -s * d.x + c * d.z};
+}
+
+// Directions and solid angles of a panorama's texels, column by column of the same row together.
+struct Texels {
+  std::vector<vec3> direction;
+  std::vector<float> solid_angle;  // of each row
+
+  Texels(int width, int height) : direction(static_cast<std::size_t>(width) * height), solid_angle(height) {
+    for (int y = 0; y < height; ++y) {
+      const double top = std::sin(kPi * (0.5 - static_cast<double>(y) / height));
+      const double bottom = std::sin(kPi * (0.5 - static_cast<double>(y + 1) / height));
+      solid_angle[y] = static_cast<float>(2 * kPi / width * (top - bottom));
+      for (int x = 0; x < width; ++x) {
+        direction[static_cast<std::size_t>(y) * width + x] =
+            directionFromLatLong({(x + 0.5f) / width, (y + 0.5f) / height});
+      }
+    }
+  }
+};
+
+// Half width, in radians of longitude, of the cap of radius `reach` around latitude `center`; pi when it
+// holds a pole.
+float capHalfWidth(float center, float reach) {
+  if (std::abs(center) + reach >= kPi / 2) return kPi;
+  return std::asin(std::min(1.0f, std::sin(reach) / std::cos(center)));
+}
+
+// The kernel as a table: a look-up a pair instead of a call.
+class KernelTable {
+ public:
+  KernelTable(const std::function<float(float)>& kernel, float min_cosine) : min_cosine_(min_cosine) {
+    const float widest = std::sqrt(1 - min_cosine);
+    scale_ = (kKernelTable - 1) / widest;
+    for (int i = 0; i < kKernelTable; ++i) {
+      const float root = i / scale_;
+      values_[i] = kernel(std::max(1 - root * root, min_cosine));
+    }
+    values_[kKernelTable] = values_[kKernelTable - 1];
+  }
+  float operator()(float cosine) const {
+    if (cosine < min_cosine_) return 0;
+    const float t = std::min(std::sqrt(std::max(0.0f, 1 - cosine)) * scale_, kKernelTable - 1.0f);
+    const int i = static_cast<int>(t);
+    return values_[i] + (t - i) * (values_[i + 1] - values_[i]);
+  }
+
+ private:
+  float min_cosine_, scale_ = 1;
+  std::array<float, kKernelTable + 1> values_{};
+};
+
+vec3 convolvedAt(const Image<vec3>& source, const Texels& texels, vec3 direction, float min_cosine,
+                 const KernelTable& kernel) {
+  const float reach = std::acos(std::clamp(min_cosine, -1.0f, 1.0f));
+  const float latitude = std::asin(std::clamp(direction.y, -1.0f, 1.0f));
+  const int w = source.width, h = source.height;
+  const int top = std::clamp(static_cast<int>((0.5f - (latitude + reach) / kPi) * h) - 1, 0, h - 1);
+  const int bottom = std::clamp(static_cast<int>((0.5f - (latitude - reach) / kPi) * h) + 1, 0, h - 1);
+  const int middle = static_cast<int>(latLongFromDirection(direction).x * w);
+  const int half = std::min(w / 2, static_cast<int>(capHalfWidth(latitude, reach) / (2 * kPi) * w) + 2);
+  const int columns = 2 * half >= w ? w : 2 * half + 1;
+  dvec3 sum(0);
+  double weight = 0;
+  for (int y = top; y <= bottom; ++y) {
+    vec3 row(0);
+    float row_weight = 0;
+    for (int i = 0; i < columns; ++i) {
+      const int x = (middle - half + i + w) % w;
+      const std::size_t t = source.index(x, y);
+      const float k = kernel(glm::dot(direction, texels.direction[t]));
+      row += k * source.pixels[t];
+      row_weight += k;
+    }
+    sum += dvec3(row) * static_cast<double>(texels.solid_angle[y]);
+    weight += static_cast<double>(row_weight) * texels.solid_angle[y];
+  }
+  return weight > 0 ? vec3(sum / weight) : lookUp(source, direction);
+}
+
+// The prefiltered radiance of one roughness; the lobe of n = v = l's mirror (Karis 2013): D(h) (n.l).
+Image<vec3> prefilteredLevel(const Image<vec3>& panorama, float roughness) {
+  const float alpha = ggxAlpha(roughness);
+  const int out = roughness < 0.15f ? 256 : roughness < 0.25f ? 128 : 64;
+  // tan^2 of the half vector that holds kHighlightShare of the lobe: share = t / (alpha^2 + t).
+  const float tan2 = alpha * alpha * kHighlightShare / (1 - kHighlightShare);
+  const float cos2_h = 1 / (1 + tan2), min_cosine = std::max(0.0f, 2 * cos2_h - 1);
+  return convolvedPanorama(reducedPanorama(panorama, 2 * out, out), {out, out / 2}, min_cosine, [=](float c) {
+    return ggxDistribution(std::sqrt(0.5f * (1 + c)), alpha) * std::max(0.0f, c);
+  });
+}
+
+}  // namespace
+
+vec2 splitSum(float n_dot_v, float roughness) {
+  const std::vector<vec2>& table = splitSumTable();
+  const float x = std::sqrt(std::clamp(n_dot_v, 0.0f, 1.0f)) * (kLutSize - 1);
+  const float y = std::clamp(roughness, 0.0f, 1.0f) * (kLutSize - 1);
+  const int x0 = std::min(static_cast<int>(x), kLutSize - 2),
+            y0 = std::min(static_cast<int>(y), kLutSize - 2);
+  const vec2* row = table.data() + y0 * kLutSize + x0;
+  return glm::mix(glm::mix(row[0], row[1], x - x0), glm::mix(row[kLutSize], row[kLutSize + 1], x - x0),
+                  y - y0);
+}
+
+Image<vec3> reducedPanorama(const Image<vec3>& in, int width, int height) {
+  const int w = std::min(width, in.width), h = std::min(height, in.height);
+  if (w == in.width && h == in.height) return in;
+  Image<vec3> out(w, h, vec3(0), Encoding::Linear);
+  // Overlap of [a, a + 1) / to with [b, b + 1) / from, for both axes; rows weighted by the sine of the
+  // latitude.
+  const auto overlap = [](int a, int to, int b, int from) {
+    const double begin = std::max(static_cast<double>(a) / to, static_cast<double>(b) / from);
+    const double end = std::min((a + 1.0) / to, (b + 1.0) / from);
+    return std::pair{begin, std::max(begin, end)};
+  };
+  parallelFor(h, 1, [&](std::size_t row, std::size_t) {
+    const int y = static_cast<int>(row);
+    const int y0 = y * in.height / h, y1 = std::min(in.height, (y + 1) * in.height / h + 1);
+    for (int x = 0; x < w; ++x) {
+      const int x0 = static_cast<int>(static_cast<std::int64_t>(x) * in.width / w);
+      const int x1 = std::min(in.width, static_cast<int>((x + 1ll) * in.width / w) + 1);
+      dvec3 sum(0);
+      double weight = 0;
+      for (int j = y0; j < y1; ++j) {
+        const auto [top, bottom] = overlap(y, h, j, in.height);
+        const double band = std::cos(kPi * top) - std::cos(kPi * bottom);
+        for (int i = x0; i < x1; ++i) {
+          const auto [left, right] = overlap(x, w, i, in.width);
+          sum += dvec3(in(i, j)) * (band * (right - left));
+          weight += band * (right - left);
+        }
+      }
+      out(x, y) = vec3(sum / weight);
+    }
+  });
+  return out;
+}
+
+Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min_cosine,
+                              const std::function<float(float)>& kernel) {
+  const Texels texels(panorama.width, panorama.height), targets(size.x, size.y);
+  const KernelTable table(kernel, min_cosine);
+  Image<vec3> out(size.x, size.y, vec3(0), Encoding::Linear);
+  parallelFor(out.pixels.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      out.pixels[i] = convolvedAt(panorama, texels, targets.direction[i], min_cosine, table);
+    }
+  });
+  return out;
+}
+
+vec3 lookUp(const Image<vec3>& r, vec3 direction) {
+  const vec2 uv = latLongFromDirection(direction);
+  const float x = uv.x * r.width - 0.5f, y = std::clamp(uv.y * r.height - 0.5f, 0.0f, r.height - 1.0f);
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(y),
+            y1 = std::min(y0 + 1, r.height - 1);
+  const int left = (x0 + r.width) % r.width, right = (x0 + 1) % r.width;
+  return glm::mix(glm::mix(r(left, y0), r(right, y0), x - x0), glm::mix(r(left, y1), r(right, y1), x - x0),
+                  y - y0);
+}
+
+struct PreparedLight::State {
+  Image<vec3> radiance;      // gain applied, own yaw not
+  float yaw_rad = 0;         // the panorama's own
+  std::array<vec3, 9> sh{};  // irradiance
+  Image<vec3> cosine_map;    // irradiance, where SH would not do; else empty
+  std::array<Image<vec3>, kLevels> levels;
+};
+
+PreparedLight::PreparedLight(const Environment& environment) : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.radiance = environment.radiance;
+  for (vec3& p : s.radiance.pixels) p *= environment.gain;
+  s.yaw_rad = environment.yaw_rad;
+  s.sh = irradianceSh(Environment{s.radiance});
+  Image<vec3> map =
+      convolvedPanorama(reducedPanorama(s.radiance, 128, 64), {64, 32}, 0.0f, [](float c) { return c; });
+  float worst = 0, mean = 0;
+  for (std::size_t i = 0; i < map.pixels.size(); ++i) {
+    map.pixels[i] *= kPi;
+    const int x = static_cast<int>(i) % map.width, y = static_cast<int>(i) / map.width;
+    const vec3 n = directionFromLatLong({(x + 0.5f) / map.width, (y + 0.5f) / map.height});
+    worst = std::max(worst, std::abs(luminance(map.pixels[i] - beam::irradiance(s.sh, n))));
+    mean += luminance(map.pixels[i]) / static_cast<float>(map.pixels.size());
+  }
+  if (worst > kShTolerance * mean) s.cosine_map = std::move(map);
+  for (int i = 1; i < kLevels; ++i) s.levels[i] = prefilteredLevel(s.radiance, i / (kLevels - 1.0f));
+}
+
+PreparedLight::~PreparedLight() = default;
+PreparedLight::PreparedLight(PreparedLight&&) noexcept = default;
+PreparedLight& PreparedLight::operator=(PreparedLight&&) noexcept = default;
+
+vec3 PreparedLight::irradiance(vec3 normal, float yaw_rad) const {
+  const vec3 n = turned(normal, -yaw_rad - state_->yaw_rad);
+  return state_->cosine_map.empty() ? beam::irradiance(state_->sh, n) : lookUp(state_->cosine_map, n);
+}
+
+vec3 PreparedLight::prefiltered(vec3 direction, float roughness, float yaw_rad) const {
+  const vec3 d = turned(direction, -yaw_rad - state_->yaw_rad);
+  const float level = std::clamp(roughness, 0.0f, 1.0f) * (kLevels - 1);
+  const int below = std::min(static_cast<int>(level), kLevels - 2);
+  const Image<vec3>& sharp = below == 0 ? state_->radiance : state_->levels[below];
+  return glm::mix(lookUp(sharp, d), lookUp(state_->levels[below + 1], d), level - below);
+}
+
+vec3 PreparedLight::background(vec3 direction, float yaw_rad) const {
+  return lookUp(state_->radiance, turned(direction, -yaw_rad - state_->yaw_rad));
+}
+
+}  // namespace beam

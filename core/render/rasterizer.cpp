@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/rasterizer.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+
+namespace beam {
+namespace {
+
+void require(bool ok, std::string_view what) {
+  if (!ok) throw Error(Error::Kind::Bug, fmt::format("rasteriser: {}", what));
+}
+
+}  // namespace
+
+Rasterizer::Rasterizer(const RasterDesc& desc) : desc_(desc) {
+  require(desc.width > 0 && desc.height > 0, "expected a positive picture size");
+  require(desc.width <= 16384 && desc.height <= 16384, "expected at most 16384 pixels a side");
+  require(desc.extra_channels >= 0 && desc.extra_channels <= 16, "expected 0 to 16 extra channels");
+}
+
+void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree, vec3 background,
+                         RasterImages& images) {
+  require(camera.width == desc_.width && camera.height == desc_.height, "the camera has another picture size");
+  require(gaussians.extra_channels == desc_.extra_channels, "the Gaussians have another number of extra channels");
+  require(sh_degree >= 0 && sh_degree <= 3, "expected an SH degree of 0 to 3");
+  doForward(gaussians, camera, sh_degree, background, images);
+  ready_ = desc_.gradients;
+}
+
+void Rasterizer::backward(const RasterImages& upstream, GaussianBuffers& gradients) {
+  require(ready_, "backward needs a forward with gradients before it");
+  doBackward(upstream, gradients);
+}
+
+}  // namespace beam

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Laws of the parameters under optimisation: activation and its chain rule, relocation, growth.
+#include "core/optim/gaussian_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/optim/mcmc.h"
+
+namespace beam {
+namespace {
+
+using L = PlaneLayout;
+
+GaussianCloud someCloud(std::size_t n) {
+  GaussianCloud c;
+  c.color = ShBlock(n, 3);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto t = static_cast<float>(i);
+    c.position_m.emplace_back(0.01f * t, 0.02f * t, 0.0f);
+    c.rotation.push_back(glm::normalize(quat(1, 0.1f * t, 0.2f, 0.3f)));
+    c.scale_m.emplace_back(0.005f + 0.001f * t, 0.004f, 0.001f);
+    c.opacity.push_back(0.1f + 0.8f * t / static_cast<float>(n));
+  }
+  return c;
+}
+
+Camera cameraInFront() {
+  Camera c;
+  c.intrinsics = {500, 500, 100, 100};
+  c.width = c.height = 200;
+  c.camera_from_world.translation_m = dvec3(0, 0, 2);
+  return c;
+}
+
+// Records the gradients that reach Adam and moves nothing.
+class RecordingOps final : public TrainingOps {
+ public:
+  GaussianBuffers seen;
+  PhotometricLoss photometric(const Planes&, const Planes&, float, Planes&) override { return {}; }
+  void adam(GaussianBuffers&, const GaussianBuffers& gradients, GaussianBuffers&, GaussianBuffers&,
+            std::span<const AdamPlane>, const AdamSettings&, int) override {
+    seen = gradients;
+  }
+};
+
+// A linear function of the physical values: its derivative by the raw ones is what the chain rule must give.
+double score(const GaussianCloud& cloud, float filter_strength, const std::vector<Camera>& cameras) {
+  GaussianModel m(cloud);
+  m.updateFilter(cameras, filter_strength);
+  m.activate();
+  return 0.7 * m.physical().plane(L::kScale)[1] - 1.3 * m.physical().plane(L::kScale + 2)[1] +
+         0.4 * m.physical().plane(L::kOpacity)[1];
+}
+
+TEST(GaussianModel, WithoutAFilterThePhysicalValuesAreTheClouds) {
+  const GaussianCloud c = someCloud(5);
+  GaussianModel m(c);
+  m.activate();
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    EXPECT_NEAR(m.physical().plane(L::kScale)[i], c.scale_m[i].x, 1e-8f);
+    EXPECT_NEAR(m.physical().plane(L::kOpacity)[i], c.opacity[i], 1e-6f);
+  }
+}
+
+TEST(GaussianModel, TheFilterGrowsScalesAndKeepsTheIntegralOfOpacity) {
+  const GaussianCloud c = someCloud(5);
+  GaussianModel m(c);
+  m.updateFilter(std::vector<Camera>{cameraInFront()}, 1.0f);
+  m.activate();
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    double before = c.opacity[i], after = m.physical().plane(L::kOpacity)[i];
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_GT(m.physical().plane(L::kScale + k)[i], c.scale_m[i][k]);
+      before *= c.scale_m[i][k];
+      after *= m.physical().plane(L::kScale + k)[i];
+    }
+    EXPECT_NEAR(after / before, 1, 1e-4);
+  }
+}
+
+TEST(GaussianModel, UnbakingAFilterGivesThePhysicalValuesBack) {
+  const std::vector<Camera> cameras{cameraInFront()};
+  GaussianModel m(someCloud(5));
+  m.updateFilter(cameras, 0.3f);
+  const GaussianCloud baked = m.cloud();
+  GaussianModel again(baked);
+  again.updateFilter(cameras, 0.3f);
+  again.unbakeFilter();
+  again.activate();
+  for (std::size_t i = 0; i < baked.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(again.physical().plane(L::kScale + k)[i] / baked.scale_m[i][k], 1, 1e-3);
+    }
+    EXPECT_NEAR(again.physical().plane(L::kOpacity)[i], baked.opacity[i], 1e-3);
+  }
+}
+
+TEST(GaussianModel, ChainsGradientsToLogScaleAndLogitAsCentralDifferencesDo) {
+  const std::vector<Camera> cameras{cameraInFront()};
+  const GaussianCloud c = someCloud(4);
+  GaussianModel m(c);
+  m.updateFilter(cameras, 1.0f);
+  m.activate();
+  GaussianBuffers gradient(c.size());
+  gradient.plane(L::kScale)[1] = 0.7f;
+  gradient.plane(L::kScale + 2)[1] = -1.3f;
+  gradient.plane(L::kOpacity)[1] = 0.4f;
+  RecordingOps ops;
+  m.step(gradient, {}, 3, {}, 1, ops);
+  const double h = 1e-3;
+  for (int k = 0; k < 3; ++k) {
+    GaussianCloud up = c, down = c;
+    up.scale_m[1][k] *= static_cast<float>(std::exp(h));
+    down.scale_m[1][k] *= static_cast<float>(std::exp(-h));
+    const double expected = (score(up, 1.0f, cameras) - score(down, 1.0f, cameras)) / (2 * h);
+    EXPECT_NEAR(ops.seen.plane(L::kScale + k)[1], expected, 2e-4) << "axis " << k;
+  }
+  const auto moved = [&](double by) {
+    GaussianCloud d = c;
+    const double l = std::log(d.opacity[1] / (1 - d.opacity[1])) + by;
+    d.opacity[1] = static_cast<float>(1 / (1 + std::exp(-l)));
+    return d;
+  };
+  const double expected = (score(moved(h), 1.0f, cameras) - score(moved(-h), 1.0f, cameras)) / (2 * h);
+  EXPECT_NEAR(ops.seen.plane(L::kOpacity)[1], expected, 2e-4);
+}
+
+TEST(Relocation, OneCopyChangesNothing) {
+  const Relocation r = relocation(0.5f, 1);
+  EXPECT_NEAR(r.opacity, 0.5f, 1e-6f);
+  EXPECT_NEAR(r.scale, 1.0f, 1e-6f);
+}
+
+TEST(Relocation, TwoCopiesOfOneHalfTakeTheKnownValues) {
+  const Relocation r = relocation(0.5f, 2);
+  EXPECT_NEAR(r.opacity, 0.29289f, 1e-5f);
+  EXPECT_NEAR(r.scale, 0.9522f, 1e-4f);
+}
+
+TEST(Mcmc, GrowthStopsAtTheCapAndKeepsEverythingFinite) {
+  GaussianModel m(someCloud(100));
+  EXPECT_EQ(grow(m, 1.5, 120, 1, 1), 20u);
+  EXPECT_EQ(m.size(), 120u);
+  EXPECT_EQ(grow(m, 1.5, 120, 1, 2), 0u);
+  EXPECT_NO_THROW(validate(m.cloud()));
+}
+
+TEST(Mcmc, DeadGaussiansMoveOntoLivingOnes) {
+  GaussianCloud c = someCloud(10);
+  c.opacity[3] = 0.001f;
+  GaussianModel m(c);
+  EXPECT_EQ(relocateDead(m, 1, 7), 1u);
+  EXPECT_GT(m.opacity(3), 0.004f);
+  EXPECT_NE(m.cloud().position_m[3], c.position_m[3]);
+}
+
+TEST(Mcmc, NoiseMovesOnlyNearlyTransparentGaussians) {
+  GaussianCloud c = someCloud(4);
+  c.opacity[2] = 0.002f;
+  GaussianModel m(c);
+  m.addNoise(100.0f, 1, 3);
+  const GaussianCloud after = m.cloud();
+  EXPECT_EQ(after.position_m[3], c.position_m[3]);
+  EXPECT_NE(after.position_m[2], c.position_m[2]);
+}
+
+TEST(GaussianModel, KeepDropsTheOthers) {
+  const GaussianCloud c = someCloud(5);
+  GaussianModel m(c);
+  const std::vector<std::uint8_t> flags{1, 0, 0, 1, 1};
+  m.keep(flags);
+  ASSERT_EQ(m.size(), 3u);
+  EXPECT_EQ(m.cloud().position_m[1], c.position_m[3]);
+  EXPECT_NEAR(m.cloud().opacity[2], c.opacity[4], 1e-6f);
+}
+
+}  // namespace
+}  // namespace beam
