@@ -42,6 +42,8 @@ class FrameSource {
   virtual Image<u8vec3> photo(ViewIndex view, FrameIndex frame) const = 0;
   // Coverage of the subject, 255 = inside; empty where the capture has no masks.
   virtual Image<std::uint8_t> mask(ViewIndex view, FrameIndex frame) const = 0;
+  // The files behind photo and mask, to tell by their bytes whether they changed; empty: there are none.
+  virtual std::vector<std::string> files(ViewIndex, FrameIndex) const { return {}; }
 };
 
 enum class UpAxis { PlusY, PlusZ, MinusY };

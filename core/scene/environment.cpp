@@ -143,19 +143,16 @@ EnvironmentSampler::Sample EnvironmentSampler::sample(float u1, float u2) const 
   return {turned(d, yaw_rad_), radiance_(x, y), pdf_[radiance_.index(x, y)]};
 }
 
-float EnvironmentSampler::pdf(vec3 direction) const {
+EnvironmentSampler::Sample EnvironmentSampler::at(vec3 direction) const {
   const vec2 uv = latLongFromDirection(turned(direction, -yaw_rad_));
   const int x = std::clamp(static_cast<int>(uv.x * width_), 0, width_ - 1);
   const int y = std::clamp(static_cast<int>(uv.y * height_), 0, height_ - 1);
-  return pdf_[radiance_.index(x, y)];
+  return {direction, radiance_(x, y), pdf_[radiance_.index(x, y)]};
 }
 
-vec3 EnvironmentSampler::texelRadiance(vec3 direction) const {
-  const vec2 uv = latLongFromDirection(turned(direction, -yaw_rad_));
-  const int x = std::clamp(static_cast<int>(uv.x * width_), 0, width_ - 1);
-  const int y = std::clamp(static_cast<int>(uv.y * height_), 0, height_ - 1);
-  return radiance_(x, y);
-}
+float EnvironmentSampler::pdf(vec3 direction) const { return at(direction).pdf; }
+
+vec3 EnvironmentSampler::texelRadiance(vec3 direction) const { return at(direction).radiance; }
 
 std::array<vec3, 9> irradianceSh(const Environment& e) {
   const Image<vec3>& r = e.radiance;

@@ -39,6 +39,7 @@ class EnvironmentSampler {
     float pdf;      // per steradian
   };
   Sample sample(float u1, float u2) const;
+  Sample at(vec3 direction) const;  // what sample() gives when it draws `direction`
   float pdf(vec3 direction) const;
   vec3 texelRadiance(vec3 direction) const;
 

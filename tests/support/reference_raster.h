@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slow right answer: every Gaussian at every pixel, in double, sorted by depth, without tiles (methods 1.2-1.5,
-// 2.1-2.4). Independent of the engine's kernels.
+// The slow right answer: every Gaussian at every pixel, in double, sorted by depth, without tiles
+// (methods 1.2-1.5, 2.1-2.4). Independent of the engine's kernels.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,8 @@ class ReferenceRaster {
   std::vector<ReferencePixel> draw(const std::vector<double>& values) const {
     std::vector<Splat> splats;
     for (std::size_t i = 0; i < count_; ++i) splats.push_back(projected(values, i));
-    std::stable_sort(splats.begin(), splats.end(), [](const Splat& a, const Splat& b) { return a.t.z < b.t.z; });
+    std::stable_sort(splats.begin(), splats.end(),
+                     [](const Splat& a, const Splat& b) { return a.t.z < b.t.z; });
     std::vector<ReferencePixel> out;
     for (int y = 0; y < camera_.height; ++y) {
       for (int x = 0; x < camera_.width; ++x) out.push_back(pixel(splats, values, {x + 0.5, y + 0.5}));
@@ -64,8 +65,8 @@ class ReferenceRaster {
     const dvec3 mu(at(v, 0, i), at(v, 1, i), at(v, 2, i));
     s.t = w * mu + camera_.camera_from_world.translation_m;
     s.drawn = s.t.z > 0.05;
-    const dquat q = glm::normalize(
-        dquat(at(v, L::kRotation, i), at(v, L::kRotation + 1, i), at(v, L::kRotation + 2, i), at(v, L::kRotation + 3, i)));
+    const dquat q = glm::normalize(dquat(at(v, L::kRotation, i), at(v, L::kRotation + 1, i),
+                                         at(v, L::kRotation + 2, i), at(v, L::kRotation + 3, i)));
     const dmat3 rc = w * glm::mat3_cast(q);
     dmat3 s2(0.0), inverse_s2(0.0);
     for (int k = 0; k < 3; ++k) {
@@ -77,8 +78,10 @@ class ReferenceRaster {
     s.inverse_covariance = rc * inverse_s2 * glm::transpose(rc);
     const Intrinsics& n = camera_.intrinsics;
     const double tan_x = 0.5 * camera_.width / n.fx, tan_y = 0.5 * camera_.height / n.fy, z = s.t.z;
-    const double xr = std::clamp(s.t.x / z, -n.cx / n.fx - 0.3 * tan_x, (camera_.width - n.cx) / n.fx + 0.3 * tan_x);
-    const double yr = std::clamp(s.t.y / z, -n.cy / n.fy - 0.3 * tan_y, (camera_.height - n.cy) / n.fy + 0.3 * tan_y);
+    const double xr =
+        std::clamp(s.t.x / z, -n.cx / n.fx - 0.3 * tan_x, (camera_.width - n.cx) / n.fx + 0.3 * tan_x);
+    const double yr =
+        std::clamp(s.t.y / z, -n.cy / n.fy - 0.3 * tan_y, (camera_.height - n.cy) / n.fy + 0.3 * tan_y);
     const dvec3 j0(n.fx / z, 0, -n.fx * xr / z), j1(0, n.fy / z, -n.fy * yr / z);
     const double a = glm::dot(j0, covariance * j0) + options_.dilation_px2, b = glm::dot(j0, covariance * j1);
     const double c = glm::dot(j1, covariance * j1) + options_.dilation_px2, det = a * c - b * b;
@@ -97,12 +100,22 @@ class ReferenceRaster {
 
   static std::array<double, 16> basisInDouble(dvec3 d) {
     const double x = d.x, y = d.y, z = d.z, xx = x * x, yy = y * y, zz = z * z;
-    return {0.28209479177387814, -0.4886025119029199 * y, 0.4886025119029199 * z, -0.4886025119029199 * x,
-            1.0925484305920792 * x * y, -1.0925484305920792 * y * z, 0.31539156525252005 * (2 * zz - xx - yy),
-            -1.0925484305920792 * x * z, 0.5462742152960396 * (xx - yy), -0.5900435899266435 * y * (3 * xx - yy),
-            2.890611442640554 * x * y * z, -0.4570457994644658 * y * (4 * zz - xx - yy),
-            0.3731763325901154 * z * (2 * zz - 3 * xx - 3 * yy), -0.4570457994644658 * x * (4 * zz - xx - yy),
-            1.445305721320277 * z * (xx - yy), -0.5900435899266435 * x * (xx - 3 * yy)};
+    return {0.28209479177387814,
+            -0.4886025119029199 * y,
+            0.4886025119029199 * z,
+            -0.4886025119029199 * x,
+            1.0925484305920792 * x * y,
+            -1.0925484305920792 * y * z,
+            0.31539156525252005 * (2 * zz - xx - yy),
+            -1.0925484305920792 * x * z,
+            0.5462742152960396 * (xx - yy),
+            -0.5900435899266435 * y * (3 * xx - yy),
+            2.890611442640554 * x * y * z,
+            -0.4570457994644658 * y * (4 * zz - xx - yy),
+            0.3731763325901154 * z * (2 * zz - 3 * xx - 3 * yy),
+            -0.4570457994644658 * x * (4 * zz - xx - yy),
+            1.445305721320277 * z * (xx - yy),
+            -0.5900435899266435 * x * (xx - 3 * yy)};
   }
 
   ReferencePixel pixel(const std::vector<Splat>& splats, const std::vector<double>& values, dvec2 p) const {
@@ -119,8 +132,8 @@ class ReferenceRaster {
       const double after = transmittance * (1 - alpha);
       if (after < options_.min_transmittance) break;
       const double w = alpha * transmittance;
-      const double ratio = glm::dot(ray, s.inverse_covariance * s.t) /
-                           glm::dot(ray, s.inverse_covariance * ray) / s.t.z;
+      const double ratio =
+          glm::dot(ray, s.inverse_covariance * s.t) / glm::dot(ray, s.inverse_covariance * ray) / s.t.z;
       const double z = s.t.z * std::clamp(ratio, 0.5, 2.0);
       out.color += w * s.color;
       out.normal += w * s.normal;

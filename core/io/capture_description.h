@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a description file says of a capture, still in the capture's own axes; the three readers of
+// descriptions and how they are told apart. openCapture turns it into a CaptureSet.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/capture.h"
+
+namespace beam {
+
+struct DescribedCamera {
+  std::string name;
+  Camera camera;  // camera_from_world holds camera_from_capture
+  Split split = Split::Train;
+  std::map<std::string, std::filesystem::path> pictures;  // by frame name
+  std::map<std::string, std::filesystem::path> masks;     // as the description names them; may be empty
+};
+
+struct CaptureDescription {
+  std::string layout;
+  std::string name;
+  double frames_per_second = 30;
+  std::optional<UpAxis> up;
+  std::vector<DescribedCamera> cameras;
+  PointCloud points;  // capture axes; may be empty
+  std::vector<std::string> warnings;
+};
+
+// Each returns nothing when its file is not there, and throws Error{Data} when it is there and wrong.
+std::optional<CaptureDescription> readDatasetJson(const std::filesystem::path& folder);
+std::optional<CaptureDescription> readTransformsJson(const std::filesystem::path& folder);
+std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder);
+
+// Pictures of a camera folder by frame name (file stem), sorted.
+std::map<std::string, std::filesystem::path> picturesIn(const std::filesystem::path& folder);
+bool isPicture(const std::filesystem::path& file);
+
+// A rotation matrix given in a file: throws Error{Data} unless it is orthonormal to 1e-3.
+dquat rotationFromMatrix(const dmat3& matrix, const std::string& where);
+
+}  // namespace beam

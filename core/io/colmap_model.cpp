@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+// COLMAP sparse models, binary before text (ecosystem 1.1). Pinhole kinds only.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/io/capture_description.h"
+#include "core/io/file.h"
+
+namespace beam {
+namespace {
+
+constexpr std::uint64_t kMaxFile = 4ull << 30;
+
+struct ModelKind {
+  const char* name;
+  int parameters;
+};
+constexpr std::array<ModelKind, 18> kModels = {{{"SIMPLE_PINHOLE", 3},
+                                                {"PINHOLE", 4},
+                                                {"SIMPLE_RADIAL", 4},
+                                                {"RADIAL", 5},
+                                                {"OPENCV", 8},
+                                                {"OPENCV_FISHEYE", 8},
+                                                {"FULL_OPENCV", 12},
+                                                {"FOV", 5},
+                                                {"SIMPLE_RADIAL_FISHEYE", 4},
+                                                {"RADIAL_FISHEYE", 5},
+                                                {"THIN_PRISM_FISHEYE", 12},
+                                                {"RAD_TAN_THIN_PRISM_FISHEYE", 16},
+                                                {"SIMPLE_DIVISION", 4},
+                                                {"DIVISION", 5},
+                                                {"SIMPLE_FISHEYE", 3},
+                                                {"FISHEYE", 4},
+                                                {"EUCM", 5},
+                                                {"EQUIRECTANGULAR", 2}}};
+
+struct ColmapCamera {
+  Intrinsics intrinsics;
+  int width = 0, height = 0;
+};
+struct ColmapImage {
+  std::uint32_t camera = 0;
+  Rigid3 camera_from_world;
+  std::string name;
+};
+struct ColmapModel {
+  std::map<std::uint32_t, ColmapCamera> cameras;
+  std::vector<ColmapImage> images;
+  PointCloud points;
+};
+
+[[noreturn]] void bad(const std::filesystem::path& path, const std::string& what) {
+  throw Error(Error::Kind::Data, fmt::format("\"{}\": {}", path.string(), what));
+}
+
+void addCamera(ColmapModel& m, const std::filesystem::path& path, std::uint32_t id, int model, double w,
+               double h, const std::vector<double>& p) {
+  const std::string name = kModels[model].name;
+  if (model > 1) {
+    bad(path,
+        fmt::format(
+            "camera {} has the model {}; only SIMPLE_PINHOLE and PINHOLE are supported yet: undistort the "
+            "pictures (colmap image_undistorter) and use that model",
+            id, name));
+  }
+  ColmapCamera c;
+  if (!(w >= 1 && w <= 65536 && h >= 1 && h <= 65536))
+    bad(path, fmt::format("camera {} has the size {} x {}", id, w, h));
+  c.width = static_cast<int>(w);
+  c.height = static_cast<int>(h);
+  c.intrinsics = model == 0 ? Intrinsics{p[0], p[0], p[1], p[2]} : Intrinsics{p[0], p[1], p[2], p[3]};
+  if (!m.cameras.emplace(id, c).second) bad(path, fmt::format("camera id {} stands twice", id));
+}
+
+void addImage(ColmapModel& m, const std::filesystem::path& path, const std::array<double, 7>& pose,
+              std::uint32_t camera, const std::string& name) {
+  for (const double v : pose) {
+    if (!std::isfinite(v)) bad(path, fmt::format("image \"{}\" has a pose that is not finite", name));
+  }
+  const dquat q(pose[0], pose[1], pose[2], pose[3]);
+  const double norm = std::sqrt(glm::dot(q, q));
+  if (std::abs(norm - 1) > 1e-2)
+    bad(path, fmt::format("image \"{}\": expected a unit quaternion, its norm is {}", name, norm));
+  if (!m.cameras.contains(camera))
+    bad(path, fmt::format("image \"{}\" names camera {}, which is not there", name, camera));
+  m.images.push_back({camera, {q / norm, dvec3(pose[4], pose[5], pose[6])}, name});
+}
+
+void addPoint(ColmapModel& m, dvec3 x, u8vec3 color, std::size_t views) {
+  if (views < 2 || !std::isfinite(x.x + x.y + x.z)) return;
+  m.points.position_m.emplace_back(x);
+  m.points.color.push_back(color);
+}
+
+class BinaryReader {
+ public:
+  explicit BinaryReader(const std::filesystem::path& path) : path_(path), bytes_(readFile(path, kMaxFile)) {}
+  template <class T>
+  T get() {
+    if (at_ + sizeof(T) > bytes_.size()) bad(path_, "the file ends early; it is truncated");
+    T v;
+    std::memcpy(&v, bytes_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return v;
+  }
+  // A count whose entries take at least `least` bytes each: checked against what is left before anything is
+  // allocated.
+  std::uint64_t count(std::size_t least, const char* what) {
+    const auto n = get<std::uint64_t>();
+    const std::uint64_t left = bytes_.size() - at_;
+    if (n > left / least)
+      bad(path_, fmt::format("the file announces {} {}, {} bytes are left; it is damaged", n, what, left));
+    return n;
+  }
+  std::string text() {
+    std::string s;
+    while (const char c = get<char>()) {
+      if (s.size() > 4096) bad(path_, "a name is longer than 4096 bytes");
+      s += c;
+    }
+    return s;
+  }
+  void skip(std::size_t bytes) { at_ += bytes; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::vector<std::byte> bytes_;
+  std::size_t at_ = 0;
+};
+
+ColmapModel readBinary(const std::filesystem::path& folder) {
+  ColmapModel m;
+  BinaryReader c(folder / "cameras.bin");
+  for (std::uint64_t n = c.count(24, "cameras"); n > 0; --n) {
+    const auto id = c.get<std::uint32_t>();
+    const auto model = c.get<std::int32_t>();
+    if (model < 0 || model >= static_cast<int>(kModels.size()))
+      bad(c.path(), fmt::format("unknown camera model {}", model));
+    const auto w = c.get<std::uint64_t>(), h = c.get<std::uint64_t>();
+    std::vector<double> p(kModels[model].parameters);
+    for (double& v : p) v = c.get<double>();
+    addCamera(m, c.path(), id, model, static_cast<double>(w), static_cast<double>(h), p);
+  }
+  BinaryReader i(folder / "images.bin");
+  for (std::uint64_t n = i.count(73, "images"); n > 0; --n) {
+    i.get<std::uint32_t>();
+    std::array<double, 7> pose;
+    for (double& v : pose) v = i.get<double>();
+    const auto camera = i.get<std::uint32_t>();
+    const std::string name = i.text();
+    i.skip(i.count(24, "points of an image") * 24);
+    addImage(m, i.path(), pose, camera, name);
+  }
+  if (!std::filesystem::exists(folder / "points3D.bin")) return m;
+  BinaryReader p(folder / "points3D.bin");
+  for (std::uint64_t n = p.count(51, "points"); n > 0; --n) {
+    p.get<std::uint64_t>();
+    dvec3 x;
+    for (int k = 0; k < 3; ++k) x[k] = p.get<double>();
+    u8vec3 color;
+    for (int k = 0; k < 3; ++k) color[k] = p.get<std::uint8_t>();
+    p.get<double>();
+    std::set<std::uint32_t> seen;
+    for (std::uint64_t t = p.count(8, "observations of a point"); t > 0; --t) {
+      seen.insert(p.get<std::uint32_t>());
+      p.get<std::uint32_t>();
+    }
+    addPoint(m, x, color, seen.size());
+  }
+  return m;
+}
+
+// Lines of a text file without comments; empty lines are kept (an image may have no points).
+std::vector<std::string> linesOf(const std::filesystem::path& path) {
+  std::istringstream in(readTextFile(path, kMaxFile));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty() || line[0] != '#') lines.push_back(line);
+  }
+  return lines;
+}
+
+void readTextCameras(ColmapModel& m, const std::filesystem::path& path) {
+  for (const std::string& line : linesOf(path)) {
+    if (line.empty()) continue;
+    std::istringstream in(line);
+    std::uint32_t id = 0;
+    std::string name;
+    double w = 0, h = 0;
+    in >> id >> name >> w >> h;
+    int model = -1;
+    for (int k = 0; k < static_cast<int>(kModels.size()); ++k) {
+      if (name == kModels[k].name) model = k;
+    }
+    if (!in || model < 0) bad(path, fmt::format("cannot understand the camera \"{}\"", line));
+    std::vector<double> p;
+    for (std::string word; in >> word;) p.push_back(std::strtod(word.c_str(), nullptr));
+    if (static_cast<int>(p.size()) < kModels[model].parameters) {
+      bad(path, fmt::format("camera {}: expected {} parameters, found {}", id, kModels[model].parameters,
+                            p.size()));
+    }
+    addCamera(m, path, id, model, w, h, p);
+  }
+}
+
+void readTextImages(ColmapModel& m, const std::filesystem::path& path) {
+  const std::vector<std::string> lines = linesOf(path);
+  for (std::size_t i = 0; i < lines.size(); i += 2) {  // every second line lists points
+    while (i < lines.size() && lines[i].empty()) ++i;
+    if (i >= lines.size()) break;
+    std::istringstream in(lines[i]);
+    std::string word;
+    std::array<double, 7> pose;
+    in >> word;
+    for (double& v : pose) {
+      in >> word;
+      v = std::strtod(word.c_str(), nullptr);
+    }
+    std::uint32_t camera = 0;
+    in >> camera;
+    std::string name;
+    std::getline(in >> std::ws, name);
+    if (name.empty()) bad(path, fmt::format("cannot understand the image \"{}\"", lines[i]));
+    addImage(m, path, pose, camera, name);
+  }
+}
+
+ColmapModel readText(const std::filesystem::path& folder) {
+  ColmapModel m;
+  readTextCameras(m, folder / "cameras.txt");
+  readTextImages(m, folder / "images.txt");
+  if (!std::filesystem::exists(folder / "points3D.txt")) return m;
+  for (const std::string& line : linesOf(folder / "points3D.txt")) {
+    std::istringstream in(line);
+    std::uint64_t id = 0;
+    dvec3 x(0);
+    int r = 0, g = 0, b = 0;
+    double error = 0;
+    if (!(in >> id >> x.x >> x.y >> x.z >> r >> g >> b >> error)) continue;
+    std::set<std::uint32_t> seen;
+    for (std::uint32_t image = 0, point = 0; in >> image >> point;) seen.insert(image);
+    addPoint(m, x, u8vec3(r, g, b), seen.size());
+  }
+  return m;
+}
+
+// A name may be a camera folder, camera/frame.ext, or a plain file (contract: import).
+void addPictures(CaptureDescription& d, const ColmapModel& m, const std::filesystem::path& pictures,
+                 const std::filesystem::path& model_folder) {
+  std::map<std::string, std::size_t> index;
+  for (const ColmapImage& i : m.images) {
+    const std::filesystem::path file = pictures / i.name;
+    const std::filesystem::path relative(i.name);
+    std::map<std::string, std::filesystem::path> found;
+    std::string name = i.name;
+    if (std::filesystem::is_directory(file)) {
+      found = picturesIn(file);
+    } else if (isPicture(file)) {
+      name = relative.has_parent_path() ? relative.parent_path().string() : relative.stem().string();
+      found[relative.has_parent_path() ? relative.stem().string() : "000000"] = file;
+    }
+    const ColmapCamera& c = m.cameras.at(i.camera);
+    const Camera camera{c.intrinsics, c.width, c.height, i.camera_from_world};
+    if (!index.contains(name)) {
+      index[name] = d.cameras.size();
+      d.cameras.push_back({name, camera, Split::Train, {}, {}});
+    }
+    DescribedCamera& described = d.cameras[index[name]];
+    const dvec3 moved = centerOf(described.camera) - centerOf(camera);
+    if (glm::length(moved) > 1e-3) {
+      bad(model_folder,
+          fmt::format(
+              "camera \"{}\" moves between its pictures by {:.3f} m; expected cameras that stand still", name,
+              glm::length(moved)));
+    }
+    described.pictures.insert(found.begin(), found.end());
+  }
+}
+
+}  // namespace
+
+std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder) {
+  for (const char* place : {"sparse/0", "sparse", "colmap/sparse/0", "."}) {
+    const std::filesystem::path model = folder / place;
+    const bool binary =
+        std::filesystem::exists(model / "cameras.bin") && std::filesystem::exists(model / "images.bin");
+    const bool text =
+        std::filesystem::exists(model / "cameras.txt") && std::filesystem::exists(model / "images.txt");
+    if (!binary && !text) continue;
+    const ColmapModel m = binary ? readBinary(model) : readText(model);
+    CaptureDescription d;
+    d.layout = binary ? "COLMAP binary" : "COLMAP text";
+    d.name = folder.filename().string();
+    addPictures(d, m, folder / "images", model);
+    d.points = m.points;
+    return d;
+  }
+  return std::nullopt;
+}
+
+}  // namespace beam

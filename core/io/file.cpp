@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/io/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+
+#include "core/base/error.h"
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kPiece = 4u << 20;
+
+[[noreturn]] void storageError(std::string_view doing, const std::filesystem::path& path) {
+  throw Error(Error::Kind::Storage,
+              fmt::format("cannot {} \"{}\": {}", doing, path.string(), std::strerror(errno)));
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  int close() {
+    const int fd = fd_;
+    fd_ = -1;
+    return ::close(fd);
+  }
+
+ private:
+  int fd_;
+};
+
+std::uint64_t regularFileSize(int fd, const std::filesystem::path& path, std::uint64_t max_bytes) {
+  struct stat info {};
+  if (::fstat(fd, &info) != 0) storageError("examine", path);
+  if (!S_ISREG(info.st_mode)) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected a regular file", path.string()));
+  }
+  const auto size = static_cast<std::uint64_t>(info.st_size);
+  if (size > max_bytes) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\": expected at most {} bytes, found {}", path.string(), max_bytes, size));
+  }
+  return size;
+}
+
+template <class Buffer>
+Buffer readWhole(const std::filesystem::path& path, std::uint64_t max_bytes) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) {
+    throw Error(Error::Kind::Data,
+                fmt::format("cannot open \"{}\": {}", path.string(), std::strerror(errno)));
+  }
+  Buffer bytes(regularFileSize(file.get(), path, max_bytes), {});
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t n = ::read(file.get(), bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) storageError("read", path);
+    if (n == 0) {
+      throw Error(Error::Kind::Data,
+                  fmt::format("\"{}\" shrank while it was read: expected {} bytes, found {}", path.string(),
+                              bytes.size(), done));
+    }
+    done += static_cast<std::size_t>(n);
+  }
+  return bytes;
+}
+
+void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), kPiece));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) storageError("write", path);
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> readFile(const std::filesystem::path& path, std::uint64_t max_bytes) {
+  return readWhole<std::vector<std::byte>>(path, max_bytes);
+}
+
+std::string readTextFile(const std::filesystem::path& path, std::uint64_t max_bytes) {
+  return readWhole<std::string>(path, max_bytes);
+}
+
+void syncPath(const std::filesystem::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) storageError("open", path);
+  // EINVAL: the file system has no sync for folders; the promise is then weaker, the data is not.
+  if (::fsync(file.get()) != 0 && errno != EINVAL) storageError("sync", path);
+}
+
+void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  static std::atomic<unsigned> counter{0};
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const std::filesystem::path temporary =
+      folder / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), counter++);
+  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644));
+  if (file.get() < 0) storageError("create a file beside", path);
+  try {
+    writeAll(file.get(), bytes, path);
+    if (::fsync(file.get()) != 0) storageError("sync", path);
+    if (file.close() != 0) storageError("close", path);
+    if (::rename(temporary.c_str(), path.c_str()) != 0) storageError("rename into", path);
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  syncPath(folder);
+}
+
+void writeFileAtomically(const std::filesystem::path& path, std::string_view text) {
+  writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+}  // namespace beam

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files: bounded reading, and the only ways in which bytes are written (write, fsync, rename, fsync of the
+// folder).
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace beam {
+
+// The whole file. Throws Error{Data} when it is missing, no regular file or larger than `max_bytes`;
+// Error{Storage} when reading fails.
+std::vector<std::byte> readFile(const std::filesystem::path& path, std::uint64_t max_bytes);
+std::string readTextFile(const std::filesystem::path& path, std::uint64_t max_bytes = 64u << 20);
+
+// Creates or replaces `path`: a temporary file in the same folder, fsync, rename, fsync of the folder. Throws
+// Error{Storage} with the reason (disk full, read-only folder) and leaves nothing behind.
+void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
+void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
+
+// Syncs a file or folder that was written otherwise; Error{Storage} on failure.
+void syncPath(const std::filesystem::path& path);
+
+}  // namespace beam

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// PNG and JPEG through OpenCV, after our own look at the header; .exr and .hdr live in files of their own.
+#include "core/io/image_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/io/radiance_file.h"
+
+namespace beam {
+namespace {
+
+constexpr std::uint64_t kMaxFile = 1ull << 30;
+constexpr int kMaxSide = 16384;
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
+constexpr std::int64_t kMaxExpansion = 1100;  // deflate's own limit is about 1030 : 1
+
+using Bytes = std::vector<std::byte>;
+
+[[noreturn]] void bad(const std::filesystem::path& path, const std::string& what) {
+  throw Error(Error::Kind::Data, fmt::format("\"{}\": {}", path.string(), what));
+}
+
+unsigned at(const Bytes& b, std::size_t i) { return std::to_integer<unsigned>(b[i]); }
+unsigned big16(const Bytes& b, std::size_t i) { return at(b, i) << 8 | at(b, i + 1); }
+unsigned big32(const Bytes& b, std::size_t i) { return big16(b, i) << 16 | big16(b, i + 2); }
+
+bool isPng(const Bytes& b) {
+  constexpr unsigned char kMagic[8] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10};
+  return b.size() >= 33 && std::memcmp(b.data(), kMagic, 8) == 0;
+}
+bool isJpeg(const Bytes& b) { return b.size() >= 4 && at(b, 0) == 0xff && at(b, 1) == 0xd8; }
+
+ImageSize jpegSize(const Bytes& b, const std::filesystem::path& path) {
+  for (std::size_t i = 2; i + 9 < b.size();) {
+    if (at(b, i) != 0xff) break;
+    const unsigned marker = at(b, i + 1);
+    if (marker == 0xff) {
+      ++i;
+      continue;
+    }
+    const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (frame) return {static_cast<int>(big16(b, i + 7)), static_cast<int>(big16(b, i + 5)), false};
+    const unsigned length = big16(b, i + 2);
+    if (length < 2) break;
+    i += 2 + length;
+  }
+  bad(path, "expected a JPEG frame header with the picture's size, found none; the file is damaged");
+}
+
+ImageSize sizeOf(const Bytes& b, const std::filesystem::path& path) {
+  if (b.empty()) bad(path, "the file is empty");
+  if (isPng(b)) {
+    const unsigned w = big32(b, 16), h = big32(b, 20), type = at(b, 25);
+    if (w > 0x7fffffffu || h > 0x7fffffffu) bad(path, "the PNG header gives an impossible size");
+    return {static_cast<int>(w), static_cast<int>(h), type == 4 || type == 6};
+  }
+  if (isJpeg(b)) return jpegSize(b, path);
+  bad(path, "expected a PNG or JPEG picture, found something else");
+}
+
+void checkSize(const ImageSize& s, const Bytes& b, const std::filesystem::path& path) {
+  const std::int64_t pixels = std::int64_t{s.width} * s.height;
+  if (s.width < 1 || s.height < 1 || s.width > kMaxSide || s.height > kMaxSide || pixels > kMaxPixels) {
+    bad(path, fmt::format("expected 1 to {} pixels a side and at most {} in all, the header says {} x {}",
+                          kMaxSide, kMaxPixels, s.width, s.height));
+  }
+  if (pixels / 8 > static_cast<std::int64_t>(b.size()) * kMaxExpansion) {
+    bad(path, fmt::format("the header says {} x {} pixels, which {} bytes cannot hold; the file is damaged",
+                          s.width, s.height, b.size()));
+  }
+}
+
+// Decoders hand out half a picture for a truncated file: the end marker must be there.
+void checkEnd(const Bytes& b, const std::filesystem::path& path) {
+  if (isPng(b)) {
+    for (std::size_t i = b.size() - 8; i > 32; --i) {
+      if (std::memcmp(&b[i], "IEND", 4) == 0) return;
+      if (b.size() - i > 4096) break;
+    }
+    bad(path, "expected a PNG's end chunk, found none; the file is truncated, copy it again");
+  }
+  for (std::size_t i = b.size() - 2; i > 2 && b.size() - i < 65536; --i) {
+    if (at(b, i) == 0xff && at(b, i + 1) == 0xd9) return;
+  }
+  bad(path, "expected a JPEG's end marker, found none; the file is truncated, copy it again");
+}
+
+// 8 bits a channel; as many channels as stored, in OpenCV's order.
+cv::Mat decode(const std::filesystem::path& path) {
+  const Bytes b = readFile(path, kMaxFile);
+  checkSize(sizeOf(b, path), b, path);
+  checkEnd(b, path);
+  cv::Mat m;
+  try {
+    m = cv::imdecode(cv::Mat(1, static_cast<int>(b.size()), CV_8U, const_cast<std::byte*>(b.data())),
+                     cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& e) {
+    bad(path, fmt::format("the picture cannot be decoded: {}", e.err));
+  }
+  if (m.empty()) bad(path, "the picture cannot be decoded; the file is damaged");
+  if (m.depth() == CV_16U) m.convertTo(m, CV_8U, 255.0 / 65535.0);
+  if (m.depth() != CV_8U) bad(path, "expected 8 or 16 bits a channel");
+  return m;
+}
+
+Image<std::uint8_t> channelOf(const cv::Mat& m, int channel) {
+  Image<std::uint8_t> out(m.cols, m.rows);
+  const int channels = m.channels();
+  for (int y = 0; y < m.rows; ++y) {
+    const std::uint8_t* row = m.ptr<std::uint8_t>(y);
+    for (int x = 0; x < m.cols; ++x) out(x, y) = row[x * channels + channel];
+  }
+  return out;
+}
+
+void writeEncoded(const std::filesystem::path& path, const cv::Mat& m) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", m, bytes)) throw Error(Error::Kind::Bug, "cannot encode a PNG picture");
+  writeFileAtomically(path, std::as_bytes(std::span(bytes)));
+}
+
+}  // namespace
+
+ImageSize readImageSize(const std::filesystem::path& path) {
+  const Bytes b = readFile(path, kMaxFile);
+  const ImageSize s = sizeOf(b, path);
+  checkSize(s, b, path);
+  return s;
+}
+
+Image<u8vec3> readPhoto(const std::filesystem::path& path) {
+  const cv::Mat m = decode(path);
+  const int channels = m.channels();
+  Image<u8vec3> out(m.cols, m.rows, u8vec3(0), Encoding::Srgb);
+  for (int y = 0; y < m.rows; ++y) {
+    const std::uint8_t* row = m.ptr<std::uint8_t>(y);
+    for (int x = 0; x < m.cols; ++x) {
+      const std::uint8_t* p = row + x * channels;
+      out(x, y) = channels < 3 ? u8vec3(p[0]) : u8vec3(p[2], p[1], p[0]);
+    }
+  }
+  return out;
+}
+
+Image<std::uint8_t> readMask(const std::filesystem::path& path) {
+  const cv::Mat m = decode(path);
+  return channelOf(m, m.channels() < 3 ? 0 : 2);
+}
+
+Image<std::uint8_t> readAlpha(const std::filesystem::path& path) {
+  const cv::Mat m = decode(path);
+  // OpenCV turns gray with alpha into four channels.
+  if (m.channels() != 4) bad(path, "expected a picture with an alpha channel");
+  return channelOf(m, 3);
+}
+
+Image<vec3> readRadiance(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".hdr" || extension == ".pic") return readRadianceHdr(path);
+  if (extension != ".exr") bad(path, "expected a panorama as .exr or .hdr");
+  const Planes p = readExr(path, {"R", "G", "B"});
+  Image<vec3> out(p.width, p.height, vec3(0), Encoding::Linear);
+  for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+    out.pixels[i] = {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]};
+  }
+  return out;
+}
+
+void writePng(const std::filesystem::path& path, const Image<u8vec3>& image) {
+  cv::Mat m(image.height, image.width, CV_8UC3);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const u8vec3 p = image(x, y);
+      m.at<cv::Vec3b>(y, x) = cv::Vec3b(p.z, p.y, p.x);
+    }
+  }
+  writeEncoded(path, m);
+}
+
+void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image) {
+  const cv::Mat m(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data()));
+  writeEncoded(path, m);
+}
+
+}  // namespace beam

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// PNG, JPEG, EXR and Radiance HDR files. Every reader checks the header's sizes against caps and against the
+// bytes that are there before it allocates (reliability 3.10), and throws Error{Data} naming file, expected
+// and found.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/image/image.h"
+
+namespace beam {
+
+struct ImageSize {
+  int width = 0, height = 0;
+  bool has_alpha = false;
+};
+
+// Size from the header alone (PNG, JPEG).
+ImageSize readImageSize(const std::filesystem::path& path);
+
+// 8-bit sRGB picture, alpha dropped.
+Image<u8vec3> readPhoto(const std::filesystem::path& path);
+// Coverage from a mask picture: its single or first channel; of a picture with alpha, readAlpha.
+Image<std::uint8_t> readMask(const std::filesystem::path& path);
+Image<std::uint8_t> readAlpha(const std::filesystem::path& path);
+
+// Linear RGB of an .exr or .hdr file.
+Image<vec3> readRadiance(const std::filesystem::path& path);
+
+// Float planes of an EXR file in order of `channels`; throws when one is missing.
+Planes readExr(const std::filesystem::path& path, const std::vector<std::string>& channels);
+std::vector<std::string> exrChannels(const std::filesystem::path& path);
+
+void writePng(const std::filesystem::path& path, const Image<u8vec3>& image);
+void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image);
+
+enum class ExrPrecision { Half, Float };
+// One channel a plane, PIZ-compressed, named as given ("Y", or "R" "G" "B").
+void writeExr(const std::filesystem::path& path, const Planes& planes,
+              const std::vector<std::string>& channels, ExrPrecision precision);
+
+}  // namespace beam

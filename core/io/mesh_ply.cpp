@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/io/mesh_ply.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/io/ply_file.h"
+
+namespace beam {
+namespace {
+
+// Appends the bytes of a value (little-endian hosts only, as all that the house builds for).
+template <class T>
+void append(std::string& out, const T& value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+std::vector<vec3> positionsOf(const PlyElement& vertex, const std::filesystem::path& path) {
+  const auto* x = vertex.column("x");
+  const auto* y = vertex.column("y");
+  const auto* z = vertex.column("z");
+  if (!x || !y || !z) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected vertices with x, y and z", path.string()));
+  }
+  std::vector<vec3> out(vertex.count);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = {static_cast<float>((*x)[i]), static_cast<float>((*y)[i]), static_cast<float>((*z)[i])};
+    if (!(std::isfinite(out[i].x) && std::isfinite(out[i].y) && std::isfinite(out[i].z))) {
+      throw Error(Error::Kind::Data, fmt::format("\"{}\": vertex {} is not finite", path.string(), i));
+    }
+  }
+  return out;
+}
+
+const PlyElement& vertexOf(const std::vector<PlyElement>& elements, const std::filesystem::path& path) {
+  if (const PlyElement* v = findElement(elements, "vertex")) return *v;
+  throw Error(Error::Kind::Data, fmt::format("\"{}\": expected an element \"vertex\"", path.string()));
+}
+
+}  // namespace
+
+void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh) {
+  std::string out = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
+      "float z\n"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      mesh.vertices.size(), mesh.triangles.size());
+  out.reserve(out.size() + mesh.vertices.size() * 12 + mesh.triangles.size() * 13);
+  for (const vec3& v : mesh.vertices) append(out, v);
+  for (const auto& t : mesh.triangles) {
+    append(out, std::uint8_t{3});
+    append(out, t);
+  }
+  writeFileAtomically(path, out);
+}
+
+void writePointsPly(const std::filesystem::path& path, const PointCloud& points) {
+  const bool colored = points.color.size() == points.position_m.size();
+  std::string out = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
+      "float z\n"
+      "{}end_header\n",
+      points.position_m.size(),
+      colored ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "");
+  for (std::size_t i = 0; i < points.position_m.size(); ++i) {
+    append(out, points.position_m[i]);
+    if (colored) append(out, points.color[i]);
+  }
+  writeFileAtomically(path, out);
+}
+
+Mesh readMeshPly(const std::filesystem::path& path) {
+  const std::vector<PlyElement> elements = readPly(path);
+  Mesh mesh;
+  mesh.vertices = positionsOf(vertexOf(elements, path), path);
+  const PlyElement* faces = findElement(elements, "face");
+  if (!faces) return mesh;
+  for (const std::vector<std::uint32_t>& polygon : faces->lists) {
+    for (const std::uint32_t v : polygon) {
+      if (v < mesh.vertices.size()) continue;
+      throw Error(Error::Kind::Data, fmt::format("\"{}\": a face names vertex {}, there are {}",
+                                                 path.string(), v, mesh.vertices.size()));
+    }
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+      mesh.triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
+    }
+  }
+  return mesh;
+}
+
+PointCloud readPointsPly(const std::filesystem::path& path) {
+  const std::vector<PlyElement> elements = readPly(path);
+  const PlyElement& vertex = vertexOf(elements, path);
+  PointCloud points;
+  points.position_m = positionsOf(vertex, path);
+  const auto* r = vertex.column("red");
+  const auto* g = vertex.column("green");
+  const auto* b = vertex.column("blue");
+  if (!r || !g || !b) return points;
+  points.color.resize(points.position_m.size());
+  for (std::size_t i = 0; i < points.color.size(); ++i) {
+    points.color[i] = u8vec3(glm::clamp(dvec3((*r)[i], (*g)[i], (*b)[i]), 0.0, 255.0));
+  }
+  return points;
+}
+
+}  // namespace beam

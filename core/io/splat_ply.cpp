@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/io/splat_ply.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/io/ply_file.h"
+
+namespace beam {
+namespace {
+
+constexpr int kRest = kShCount - 1;
+
+std::vector<std::string> standardColumns() {
+  std::vector<std::string> c = {"x", "y", "z", "nx", "ny", "nz"};
+  for (int i = 0; i < 3; ++i) c.push_back(fmt::format("f_dc_{}", i));
+  for (int i = 0; i < 3 * kRest; ++i) c.push_back(fmt::format("f_rest_{}", i));
+  c.insert(c.end(), {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"});
+  return c;
+}
+
+std::vector<std::string> materialColumns() {
+  std::vector<std::string> c = {"roughness", "metallic"};
+  for (int i = 0; i < 3; ++i) c.push_back(fmt::format("base_color_dc_{}", i));
+  for (int i = 0; i < 3 * kRest; ++i) c.push_back(fmt::format("base_color_rest_{}", i));
+  c.push_back("ao_dc_0");
+  for (int i = 0; i < kRest; ++i) c.push_back(fmt::format("ao_rest_{}", i));
+  return c;
+}
+
+// dc of every channel, then the rest channel after channel.
+float* putSh(float* out, const float* sh, int channels) {
+  for (int c = 0; c < channels; ++c) *out++ = sh[c];
+  for (int c = 0; c < channels; ++c) {
+    for (int k = 1; k < kShCount; ++k) *out++ = sh[k * channels + c];
+  }
+  return out;
+}
+
+// The shortest axis, turned away from the middle of the cloud.
+vec3 outwardNormal(const GaussianCloud& cloud, std::size_t i, vec3 center) {
+  const vec3 s = cloud.scale_m[i];
+  const int axis = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
+  const vec3 n = glm::mat3_cast(cloud.rotation[i])[axis];
+  return glm::dot(n, cloud.position_m[i] - center) < 0 ? -n : n;
+}
+
+class Columns {
+ public:
+  Columns(const PlyElement& e, const std::filesystem::path& path) : element_(e), path_(path) {}
+  bool has(const std::string& name) const { return element_.column(name) != nullptr; }
+  const std::vector<double>& operator[](const std::string& name) const {
+    if (const auto* c = element_.column(name)) return *c;
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected a splat PLY, its column \"{}\" is missing",
+                                               path_.string(), name));
+  }
+  int count(const std::string& stem) const {
+    int n = 0;
+    while (has(fmt::format("{}{}", stem, n))) ++n;
+    return n;
+  }
+
+ private:
+  const PlyElement& element_;
+  const std::filesystem::path& path_;
+};
+
+// Fills a block from "<stem>dc_" and "<stem>rest_" columns; returns the stored degree.
+int readSh(const Columns& columns, const std::string& stem, const std::string& rest, ShBlock& block,
+           std::size_t n, const std::filesystem::path& path) {
+  const int stored = columns.count(rest), per_channel = stored / block.channels;
+  int degree = -1;
+  for (int d = 0; d <= 3; ++d) {
+    if (shCount(d) - 1 == per_channel && stored % block.channels == 0) degree = d;
+  }
+  if (degree < 0) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\": expected 0, 3, 8 or 15 columns \"{}N\" a channel, found {}",
+                            path.string(), rest, stored));
+  }
+  block = ShBlock(n, block.channels);
+  for (int c = 0; c < block.channels; ++c) {
+    const auto& dc = columns[fmt::format("{}{}", stem, c)];
+    for (std::size_t i = 0; i < n; ++i) block.of(i)[c] = static_cast<float>(dc[i]);
+    for (int k = 0; k < per_channel; ++k) {
+      const auto& v = columns[fmt::format("{}{}", rest, c * per_channel + k)];
+      for (std::size_t i = 0; i < n; ++i)
+        block.of(i)[(k + 1) * block.channels + c] = static_cast<float>(v[i]);
+    }
+  }
+  return degree;
+}
+
+// Band by band, the matrix that turns coefficients so that value'(R d) = value(d): solved from sample
+// directions, exact to rounding since a band is closed under rotation.
+struct ShRotation {
+  double band[4][7][7];
+};
+
+void solveBand(int l, const dmat3& rotation, double (&out)[7][7]) {
+  const int n = 2 * l + 1, first = l * l;
+  double a[7][14] = {};
+  // Normal equations over well-spread directions: B(R d)^T B(R d) X = B(R d)^T B(d).
+  constexpr int kDirections = 64;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z), phi = 2.399963229728653 * i;
+    const dvec3 d(r * std::cos(phi), r * std::sin(phi), z);
+    const auto from = shBasis(vec3(d)), to = shBasis(vec3(rotation * d));
+    for (int p = 0; p < n; ++p) {
+      for (int q = 0; q < n; ++q) {
+        a[p][q] += double(to[first + p]) * to[first + q];
+        a[p][n + q] += double(to[first + p]) * from[first + q];
+      }
+    }
+  }
+  for (int p = 0; p < n; ++p) {  // Gauss-Jordan; the matrix is well conditioned
+    const double pivot = a[p][p];
+    for (int q = 0; q < 2 * n; ++q) a[p][q] /= pivot;
+    for (int r = 0; r < n; ++r) {
+      if (r == p) continue;
+      const double f = a[r][p];
+      for (int q = 0; q < 2 * n; ++q) a[r][q] -= f * a[p][q];
+    }
+  }
+  for (int p = 0; p < n; ++p) {
+    for (int q = 0; q < n; ++q) {
+      const double v = a[p][n + q];
+      // Signed permutations give whole numbers and halves of roots; only rounding noise around 0 and 1 is
+      // cleaned.
+      out[p][q] = std::abs(v) < 1e-6 ? 0 : std::abs(std::abs(v) - 1) < 1e-6 ? std::copysign(1.0, v) : v;
+    }
+  }
+}
+
+ShBlock rotatedSh(const ShBlock& in, const dmat3& rotation) {
+  ShRotation m{};
+  for (int l = 1; l <= 3; ++l) solveBand(l, rotation, m.band[l]);
+  ShBlock out = in;
+  const std::size_t n = in.coefficients.size() / (static_cast<std::size_t>(kShCount) * in.channels);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int l = 1; l <= 3; ++l) {
+      for (int p = 0; p < 2 * l + 1; ++p) {
+        for (int c = 0; c < in.channels; ++c) {
+          double sum = 0;
+          for (int q = 0; q < 2 * l + 1; ++q)
+            sum += m.band[l][p][q] * in.of(i)[(l * l + q) * in.channels + c];
+          out.of(i)[(l * l + p) * in.channels + c] = static_cast<float>(sum);
+        }
+      }
+    }
+  }
+  return out;
+}
+
+void requireRotation(const dmat3& r) {
+  if (std::abs(glm::determinant(r) - 1) < 1e-6) return;
+  throw Error(Error::Kind::Bug, "Gaussians can be turned by a rotation only; a mirror has no quaternion");
+}
+
+}  // namespace
+
+void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud,
+                   const Materials* materials) {
+  std::vector<std::string> columns = standardColumns();
+  if (materials) {
+    const std::vector<std::string> more = materialColumns();
+    columns.insert(columns.end(), more.begin(), more.end());
+  }
+  std::string out = "ply\nformat binary_little_endian 1.0\n";
+  if (materials) out += "comment beam materials 1: linear base colour, ambient occlusion, value = 0.5 + SH\n";
+  out += fmt::format("element vertex {}\n", cloud.size());
+  for (const std::string& c : columns) out += "property float " + c + "\n";
+  out += "end_header\n";
+  const std::size_t header = out.size();
+  out.resize(header + cloud.size() * columns.size() * 4);
+  vec3 center(0);
+  for (const vec3& p : cloud.position_m) center += p / static_cast<float>(cloud.size());
+  std::vector<float> row(columns.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    float* v = row.data();
+    const vec3 normal = outwardNormal(cloud, i, center);
+    for (int k = 0; k < 3; ++k) *v++ = cloud.position_m[i][k];
+    for (int k = 0; k < 3; ++k) *v++ = normal[k];
+    v = putSh(v, cloud.color.of(i), 3);
+    *v++ = std::log(cloud.opacity[i] / (1 - cloud.opacity[i]));
+    for (int k = 0; k < 3; ++k) *v++ = std::log(cloud.scale_m[i][k]);
+    const quat& q = cloud.rotation[i];
+    for (const float k : {q.w, q.x, q.y, q.z}) *v++ = k;
+    if (materials) {
+      *v++ = materials->roughness[i];
+      *v++ = 0;
+      v = putSh(v, materials->base_color.of(i), 3);
+      putSh(v, materials->ambient_occlusion.of(i), 1);
+    }
+    std::memcpy(out.data() + header + i * row.size() * 4, row.data(), row.size() * 4);
+  }
+  writeFileAtomically(path, out);
+}
+
+SplatFile readSplatPly(const std::filesystem::path& path) {
+  const std::vector<PlyElement> elements = readPly(path);
+  const PlyElement* vertex = findElement(elements, "vertex");
+  if (!vertex)
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected an element \"vertex\"", path.string()));
+  const Columns columns(*vertex, path);
+  const std::size_t n = vertex->count;
+  SplatFile file;
+  GaussianCloud& c = file.cloud;
+  c.position_m.resize(n), c.rotation.resize(n), c.scale_m.resize(n), c.opacity.resize(n);
+  const auto fill = [&](const std::string& name, auto&& set) {
+    const std::vector<double>& v = columns[name];
+    for (std::size_t i = 0; i < n; ++i) set(i, static_cast<float>(v[i]));
+  };
+  for (int k = 0; k < 3; ++k) {
+    fill(std::string(1, "xyz"[k]), [&](std::size_t i, float v) { c.position_m[i][k] = v; });
+    fill(fmt::format("scale_{}", k), [&](std::size_t i, float v) { c.scale_m[i][k] = std::exp(v); });
+  }
+  fill("opacity",
+       [&](std::size_t i, float v) { c.opacity[i] = std::clamp(1 / (1 + std::exp(-v)), 1e-7f, 1 - 1e-7f); });
+  fill("rot_0", [&](std::size_t i, float v) { c.rotation[i].w = v; });
+  fill("rot_1", [&](std::size_t i, float v) { c.rotation[i].x = v; });
+  fill("rot_2", [&](std::size_t i, float v) { c.rotation[i].y = v; });
+  fill("rot_3", [&](std::size_t i, float v) { c.rotation[i].z = v; });
+  for (quat& q : c.rotation) {
+    const float norm = std::sqrt(glm::dot(q, q));
+    q = norm > 0 && std::isfinite(norm) ? q / norm : quat(1, 0, 0, 0);
+  }
+  file.sh_degree = readSh(columns, "f_dc_", "f_rest_", c.color, n, path);
+  if (columns.has("roughness") && columns.has("base_color_dc_0") && columns.has("ao_dc_0")) {
+    Materials m;
+    m.roughness.resize(n);
+    fill("roughness", [&](std::size_t i, float v) { m.roughness[i] = std::clamp(v, 0.04f, 1.0f); });
+    readSh(columns, "base_color_dc_", "base_color_rest_", m.base_color, n, path);
+    readSh(columns, "ao_dc_", "ao_rest_", m.ambient_occlusion, n, path);
+    file.materials = std::move(m);
+  }
+  validate(file.cloud);
+  return file;
+}
+
+GaussianCloud rotated(const GaussianCloud& cloud, const dmat3& rotation) {
+  requireRotation(rotation);
+  GaussianCloud out = cloud;
+  const quat q = quat(glm::quat_cast(rotation));
+  for (vec3& p : out.position_m) p = vec3(rotation * dvec3(p));
+  for (quat& r : out.rotation) r = glm::normalize(q * r);
+  out.color = rotatedSh(cloud.color, rotation);
+  return out;
+}
+
+Materials rotated(const Materials& materials, const dmat3& rotation) {
+  requireRotation(rotation);
+  Materials out = materials;
+  out.base_color = rotatedSh(materials.base_color, rotation);
+  out.ambient_occlusion = rotatedSh(materials.ambient_occlusion, rotation);
+  return out;
+}
+
+}  // namespace beam

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The splat PLY dialect (ecosystem 2.1), the only file that knows its logits and logs: 62 standard columns,
+// then ours (roughness, metallic, base_color_dc/rest, ao_dc/rest).
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "core/scene/gaussian_cloud.h"
+
+namespace beam {
+
+struct SplatFile {
+  GaussianCloud cloud;
+  std::optional<Materials> materials;
+  int sh_degree = 3;  // as stored
+};
+
+// Bytes depend on the values alone: no name, path or time enters them.
+void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud, const Materials* materials);
+SplatFile readSplatPly(const std::filesystem::path& path);
+
+// The cloud in other axes: positions, rotations and the SH bands turn with `rotation` (proper or improper
+// signed permutation or any rotation).
+GaussianCloud rotated(const GaussianCloud& cloud, const dmat3& rotation);
+Materials rotated(const Materials& materials, const dmat3& rotation);
+
+}  // namespace beam

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files: what is written is read back; what is damaged is refused by name, before memory is taken.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/base/rng.h"
+#include "core/io/file.h"
+#include "core/io/image_file.h"
+#include "core/io/mesh_ply.h"
+#include "core/io/splat_ply.h"
+#include "tests/support/temp_dir.h"
+
+namespace beam {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TempDir;
+
+void put(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+std::string bytesOf(const std::filesystem::path& path) { return readTextFile(path); }
+
+template <class Call>
+std::string dataErrorOf(Call&& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::Data);
+    return e.what();
+  }
+  ADD_FAILURE() << "expected an error";
+  return "";
+}
+
+Image<u8vec3> picture(int w, int h) {
+  Image<u8vec3> p(w, h);
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) p(x, y) = u8vec3(x * 7, y * 5, x + y);
+  }
+  return p;
+}
+
+TEST(PngFile, ComesBackAsItWasWritten) {
+  const TempDir dir;
+  writePng(dir / "a.png", picture(17, 9));
+  EXPECT_EQ(readPhoto(dir / "a.png").pixels, picture(17, 9).pixels);
+  EXPECT_EQ(readImageSize(dir / "a.png").width, 17);
+  Image<std::uint8_t> mask(5, 4, 200);
+  writePng(dir / "m.png", mask);
+  EXPECT_EQ(readMask(dir / "m.png").pixels, mask.pixels);
+}
+
+TEST(PngFile, ATruncatedOneIsAnErrorAndNotHalfAPicture) {
+  const TempDir dir;
+  writePng(dir / "a.png", picture(60, 60));
+  const std::string whole = bytesOf(dir / "a.png");
+  put(dir / "cut.png", whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(dataErrorOf([&] { readPhoto(dir / "cut.png"); }), HasSubstr("truncated"));
+}
+
+TEST(PngFile, AHeaderOfAMillionPixelsASideIsRefused) {
+  const TempDir dir;
+  writePng(dir / "a.png", picture(6, 6));
+  std::string bytes = bytesOf(dir / "a.png");
+  for (const int at : {16, 20}) bytes.replace(at, 4, std::string("\x00\x0f\x42\x40", 4));
+  put(dir / "huge.png", bytes);
+  EXPECT_THAT(dataErrorOf([&] { readPhoto(dir / "huge.png"); }), HasSubstr("1000000"));
+}
+
+TEST(PngFile, SomethingElseIsNamed) {
+  const TempDir dir;
+  put(dir / "a.png", "hello, this is no picture at all, just text");
+  EXPECT_THAT(dataErrorOf([&] { readPhoto(dir / "a.png"); }), HasSubstr("a.png"));
+}
+
+TEST(ExrFile, FloatsComeBackExactlyAndHalvesNearly) {
+  const TempDir dir;
+  Planes p(7, 5, 3);
+  for (std::size_t i = 0; i < p.values.size(); ++i) p.values[i] = 0.013f * static_cast<float>(i);
+  writeExr(dir / "f.exr", p, {"R", "G", "B"}, ExrPrecision::Float);
+  EXPECT_EQ(readExr(dir / "f.exr", {"R", "G", "B"}).values, p.values);
+  writeExr(dir / "h.exr", p, {"R", "G", "B"}, ExrPrecision::Half);
+  const Planes h = readExr(dir / "h.exr", {"R", "G", "B"});
+  for (std::size_t i = 0; i < p.values.size(); ++i) EXPECT_NEAR(h.values[i], p.values[i], 1e-3f);
+  EXPECT_THAT(dataErrorOf([&] { readExr(dir / "f.exr", {"Y"}); }), HasSubstr("Y"));
+}
+
+TEST(ExrFile, AnEmptyOrDamagedOneIsRefused) {
+  const TempDir dir;
+  put(dir / "e.exr", "");
+  EXPECT_THAT(dataErrorOf([&] { readRadiance(dir / "e.exr"); }), HasSubstr("empty"));
+  Planes p(64, 64, 1, 0.5f);
+  writeExr(dir / "y.exr", p, {"Y"}, ExrPrecision::Float);
+  put(dir / "cut.exr", bytesOf(dir / "y.exr").substr(0, 300));
+  dataErrorOf([&] { readExr(dir / "cut.exr", {"Y"}); });
+}
+
+TEST(HdrFile, FlatAndOldRunLengthScanlinesAreRead) {
+  const TempDir dir;
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 1 +X 3\n";
+  // One pixel (128, 64, 0) * 2^(129 - 136) and a run of two more.
+  put(dir / "a.hdr", header + std::string("\x80\x40\x00\x81\x01\x01\x01\x02", 8));
+  const Image<vec3> im = readRadiance(dir / "a.hdr");
+  ASSERT_EQ(im.width, 3);
+  for (int x = 0; x < 3; ++x) {
+    EXPECT_NEAR(im(x, 0).x, 0.5, 1e-6);
+    EXPECT_NEAR(im(x, 0).y, 0.25, 1e-6);
+  }
+}
+
+TEST(HdrFile, NewRunsAreReadAndATruncatedFileIsRefused) {
+  const TempDir dir;
+  std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
+  bytes += std::string("\x02\x02\x00\x08", 4);
+  for (int c = 0; c < 4; ++c) bytes += std::string("\x88", 1) + static_cast<char>(c == 3 ? 128 : 64);
+  put(dir / "a.hdr", bytes);
+  EXPECT_NEAR(readRadiance(dir / "a.hdr")(7, 0).z, 64.0 / 256, 1e-6);
+  put(dir / "b.hdr", bytes.substr(0, bytes.size() - 3));
+  EXPECT_THAT(dataErrorOf([&] { readRadiance(dir / "b.hdr"); }), HasSubstr("truncated"));
+}
+
+TEST(MeshPly, MeshesAndPointsComeBack) {
+  const TempDir dir;
+  Mesh m;
+  m.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  m.triangles = {{0, 1, 2}};
+  writeMeshPly(dir / "m.ply", m);
+  EXPECT_EQ(readMeshPly(dir / "m.ply").triangles, m.triangles);
+  EXPECT_EQ(readMeshPly(dir / "m.ply").vertices, m.vertices);
+  PointCloud p{{{1, 2, 3}}, {u8vec3(9, 8, 7)}};
+  writePointsPly(dir / "p.ply", p);
+  EXPECT_EQ(readPointsPly(dir / "p.ply").color, p.color);
+}
+
+TEST(MeshPly, AsciiPolygonsAreFannedAndAbsurdCountsRefused) {
+  const TempDir dir;
+  put(dir / "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
+  EXPECT_EQ(readMeshPly(dir / "a.ply").triangles.size(), 2u);
+  put(dir / "b.ply",
+      "ply\nformat binary_little_endian 1.0\nelement vertex 60000000\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n");
+  EXPECT_THAT(dataErrorOf([&] { readMeshPly(dir / "b.ply"); }), HasSubstr("60000000"));
+}
+
+struct Splats {
+  GaussianCloud cloud;
+  Materials materials;
+};
+Splats someSplats(std::size_t n) {
+  Splats s;
+  s.cloud.color = ShBlock(n, 3);
+  s.materials.base_color = ShBlock(n, 3);
+  s.materials.ambient_occlusion = ShBlock(n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const RandomStream r(4, i);
+    s.cloud.position_m.emplace_back(r.normal(0), r.normal(1), r.normal(2));
+    s.cloud.rotation.push_back(glm::normalize(quat(r.normal(3), r.normal(4), r.normal(5), r.normal(6))));
+    s.cloud.scale_m.emplace_back(0.01f + r.uniform(7), 0.01f + r.uniform(8), 0.01f + r.uniform(9));
+    s.cloud.opacity.push_back(0.05f + 0.9f * r.uniform(10));
+    s.materials.roughness.push_back(0.1f + 0.8f * r.uniform(11));
+    for (int k = 0; k < 48; ++k)
+      s.cloud.color.of(i)[k] = r.normal(20 + k), s.materials.base_color.of(i)[k] = r.normal(80 + k);
+    for (int k = 0; k < 16; ++k) s.materials.ambient_occlusion.of(i)[k] = r.normal(140 + k);
+  }
+  return s;
+}
+
+TEST(SplatPly, ComesBackAndASecondWriteGivesTheSameBytes) {
+  const TempDir dir;
+  const Splats s = someSplats(20);
+  writeSplatPly(dir / "a.ply", s.cloud, &s.materials);
+  const SplatFile f = readSplatPly(dir / "a.ply");
+  ASSERT_TRUE(f.materials);
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(f.cloud.position_m[i], s.cloud.position_m[i]);
+    EXPECT_NEAR(f.cloud.opacity[i], s.cloud.opacity[i], 1e-6f);
+    EXPECT_NEAR(f.cloud.scale_m[i].y / s.cloud.scale_m[i].y, 1, 1e-5f);
+  }
+  EXPECT_EQ(f.cloud.color.coefficients, s.cloud.color.coefficients);
+  EXPECT_EQ(f.materials->ambient_occlusion.coefficients, s.materials.ambient_occlusion.coefficients);
+  writeSplatPly(dir / "b.ply", s.cloud, &s.materials);
+  EXPECT_EQ(bytesOf(dir / "a.ply"), bytesOf(dir / "b.ply"));
+}
+
+TEST(SplatPly, HoldsTheStandardColumnsFirstInTheirOrder) {
+  const TempDir dir;
+  writeSplatPly(dir / "a.ply", someSplats(1).cloud, nullptr);
+  const std::string text = bytesOf(dir / "a.ply");
+  std::size_t last = 0, count = 0;
+  for (std::size_t at = text.find("property float"); at != std::string::npos;
+       at = text.find("property float", at + 1))
+    ++count;
+  EXPECT_EQ(count, 62u);
+  for (const char* name : {" x\n", " nx\n", " f_dc_0\n", " f_rest_0\n", " f_rest_44\n", " opacity\n",
+                           " scale_0\n", " rot_3\n"}) {
+    const std::size_t at = text.find(name);
+    EXPECT_NE(at, std::string::npos) << name;
+    EXPECT_GT(at, last) << name;
+    last = at;
+  }
+}
+
+float valueOf(const ShBlock& b, vec3 d, int c) {
+  const auto basis = shBasis(d);
+  float v = 0;
+  for (int k = 0; k < kShCount; ++k) v += basis[k] * b.of(0)[k * b.channels + c];
+  return v;
+}
+
+TEST(SplatPly, TurningTheAxesKeepsWhatIsSeenFromATurnedDirection) {
+  const Splats s = someSplats(1);
+  for (const dmat3& r :
+       {worldFromCapture(UpAxis::PlusZ), glm::mat3_cast(glm::normalize(dquat(0.7, 0.3, -0.5, 0.4)))}) {
+    const GaussianCloud turned = rotated(s.cloud, r);
+    for (int i = 0; i < 20; ++i) {
+      const RandomStream u(9, i);
+      const vec3 d = glm::normalize(vec3(u.normal(0), u.normal(1), u.normal(2)));
+      EXPECT_NEAR(valueOf(turned.color, vec3(r * dvec3(d)), 1), valueOf(s.cloud.color, d, 1), 2e-4);
+    }
+  }
+  EXPECT_THROW(rotated(s.cloud, dmat3(-1.0)), Error);
+}
+
+TEST(Files, AnAtomicWriteReplacesAndLeavesNothingElse) {
+  const TempDir dir;
+  writeFileAtomically(dir / "a", std::string_view("one"));
+  writeFileAtomically(dir / "a", std::string_view("two"));
+  EXPECT_EQ(bytesOf(dir / "a"), "two");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
+  EXPECT_THROW(writeFileAtomically(dir / "none/a", std::string_view("x")), Error);
+}
+
+}  // namespace
+}  // namespace beam
