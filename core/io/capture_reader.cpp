@@ -81,6 +81,12 @@ class FileFrames final : public FrameSource {
     return m;
   }
 
+  std::vector<std::string> files(ViewIndex view, FrameIndex frame) const override {
+    const PictureFiles& f = at(view, frame);
+    if (f.mask.empty()) return {f.picture.string()};
+    return {f.picture.string(), f.mask.string()};
+  }
+
  private:
   const PictureFiles& at(ViewIndex view, FrameIndex frame) const { return files_[view.value][frame.value]; }
 

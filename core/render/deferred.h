@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deferred rendering on the CPU: Gaussians to a G-buffer (methods 7.1), G-buffer and light to a picture (methods 7.2:
-// SH irradiance, split-sum specular, AO, specular occlusion). Later shaders must match it.
+// Deferred rendering on the CPU: Gaussians to a G-buffer (methods 7.1), G-buffer and light to a picture
+// (methods 7.2: SH irradiance, split-sum specular, AO, specular occlusion). Later shaders must match it.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace beam {
 
-// G-buffer of a view: everything that cloud and materials (may be null) can give. Keeps its rasteriser between calls
-// of one size.
+// G-buffer of a view: everything that cloud and materials (may be null) can give. Keeps its rasteriser
+// between calls of one size.
 class GBufferRenderer {
  public:
   explicit GBufferRenderer(ComputeDevice& device);
@@ -26,15 +26,15 @@ class GBufferRenderer {
   std::unique_ptr<State> state_;
 };
 
-// A panorama prepared for shading: irradiance SH, GGX-prefiltered levels, split-sum table. Preparing takes a moment
-// (parallel); shading many views with it does not. Turning the light (yaw) needs no new preparation.
+// A panorama prepared for shading: irradiance SH, GGX-prefiltered levels, split-sum table. Preparing takes a
+// moment (parallel); shading many views with it does not. Turning the light (yaw) needs no new preparation.
 class PreparedLight {
  public:
   explicit PreparedLight(const Environment& environment);
   ~PreparedLight();
   PreparedLight(PreparedLight&&) noexcept;
   PreparedLight& operator=(PreparedLight&&) noexcept;
-  vec3 irradiance(vec3 normal, float yaw_rad) const;                   // E(n)
+  vec3 irradiance(vec3 normal, float yaw_rad) const;  // E(n)
   vec3 prefiltered(vec3 direction, float roughness, float yaw_rad) const;
   vec3 background(vec3 direction, float yaw_rad) const;
 
@@ -51,6 +51,7 @@ struct ShadeOptions {
 };
 
 // Linear relit radiance x alpha (premultiplied, black background).
-Image<vec3> shade(const GBuffer& gbuffer, const Camera& camera, const PreparedLight& light, const ShadeOptions& options);
+Image<vec3> shade(const GBuffer& gbuffer, const Camera& camera, const PreparedLight& light,
+                  const ShadeOptions& options);
 
 }  // namespace beam

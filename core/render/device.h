@@ -27,7 +27,8 @@ class ComputeDevice {
   virtual std::unique_ptr<TrainingOps> newTrainingOps() = 0;
 };
 
-// The CPU device on an instruction set; results do not depend on it. Throws Error{Usage} when the machine lacks it.
+// The CPU device on an instruction set; results do not depend on it. Throws Error{Usage} when the machine
+// lacks it.
 std::unique_ptr<ComputeDevice> makeCpuDevice(SimdTarget target = SimdTarget::Auto);
 
 }  // namespace beam

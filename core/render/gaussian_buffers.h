@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaussians as the engine computes on them: one float plane an attribute component, 64-byte aligned, padded to 16.
-// A plane layout lets kernels load 16 Gaussians at once and lets the optimiser step over everything in one sweep.
+// Gaussians as the engine computes on them: one float plane an attribute component, 64-byte aligned, padded
+// to 16. A plane layout lets kernels load 16 Gaussians at once and lets the optimiser step over everything in
+// one sweep.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@
 
 namespace beam {
 
-// Planes in order: position 3, rotation 4 (w x y z, need not be unit), scale 3, opacity 1, sh 48 (k * 3 + channel),
-// then the extra channels.
+// Planes in order: position 3, rotation 4 (w x y z, need not be unit), scale 3, opacity 1, sh 48 (k * 3 +
+// channel), then the extra channels.
 struct PlaneLayout {
   static constexpr int kPosition = 0, kRotation = 3, kScale = 7, kOpacity = 10, kSh = 11, kExtra = 59;
 };
@@ -26,7 +27,10 @@ struct GaussianBuffers {
 
   GaussianBuffers() = default;
   explicit GaussianBuffers(std::size_t n, int extra = 0)
-      : count(n), stride((n + 15) / 16 * 16), extra_channels(extra), values(stride * (PlaneLayout::kExtra + extra)) {}
+      : count(n),
+        stride((n + 15) / 16 * 16),
+        extra_channels(extra),
+        values(stride * (PlaneLayout::kExtra + extra)) {}
   int planes() const { return PlaneLayout::kExtra + extra_channels; }
   float* plane(int p) { return values.data() + stride * p; }
   const float* plane(int p) const { return values.data() + stride * p; }

@@ -137,14 +137,16 @@ vec3 convolvedAt(const Image<vec3>& source, const Texels& texels, vec3 direction
   return weight > 0 ? vec3(sum / weight) : lookUp(source, direction);
 }
 
-// The prefiltered radiance of one roughness; the lobe of n = v = l's mirror (Karis 2013): D(h) (n.l).
+// The prefiltered radiance of one roughness; the lobe of n = v = l's mirror (Karis 2013): D(h) (n.l). Texels are
+// kept below half the lobe's width.
 Image<vec3> prefilteredLevel(const Image<vec3>& panorama, float roughness) {
   const float alpha = ggxAlpha(roughness);
-  const int out = roughness < 0.15f ? 256 : roughness < 0.25f ? 128 : 64;
+  const int out = roughness < 0.15f ? 256 : roughness < 0.35f ? 128 : 64;
+  const int in = roughness < 0.15f ? 512 : roughness < 0.25f ? 256 : roughness < 0.55f ? 128 : 64;
   // tan^2 of the half vector that holds kHighlightShare of the lobe: share = t / (alpha^2 + t).
   const float tan2 = alpha * alpha * kHighlightShare / (1 - kHighlightShare);
   const float cos2_h = 1 / (1 + tan2), min_cosine = std::max(0.0f, 2 * cos2_h - 1);
-  return convolvedPanorama(reducedPanorama(panorama, 2 * out, out), {out, out / 2}, min_cosine, [=](float c) {
+  return convolvedPanorama(reducedPanorama(panorama, in, in / 2), {out, out / 2}, min_cosine, [=](float c) {
     return ggxDistribution(std::sqrt(0.5f * (1 + c)), alpha) * std::max(0.0f, c);
   });
 }
@@ -234,7 +236,7 @@ PreparedLight::PreparedLight(const Environment& environment) : state_(std::make_
   s.yaw_rad = environment.yaw_rad;
   s.sh = irradianceSh(Environment{s.radiance});
   Image<vec3> map =
-      convolvedPanorama(reducedPanorama(s.radiance, 128, 64), {64, 32}, 0.0f, [](float c) { return c; });
+      convolvedPanorama(reducedPanorama(s.radiance, 128, 64), {128, 64}, 0.0f, [](float c) { return c; });
   float worst = 0, mean = 0;
   for (std::size_t i = 0; i < map.pixels.size(); ++i) {
     map.pixels[i] *= kPi;

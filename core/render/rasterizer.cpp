@@ -20,10 +20,12 @@ Rasterizer::Rasterizer(const RasterDesc& desc) : desc_(desc) {
   require(desc.extra_channels >= 0 && desc.extra_channels <= 16, "expected 0 to 16 extra channels");
 }
 
-void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree, vec3 background,
-                         RasterImages& images) {
-  require(camera.width == desc_.width && camera.height == desc_.height, "the camera has another picture size");
-  require(gaussians.extra_channels == desc_.extra_channels, "the Gaussians have another number of extra channels");
+void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree,
+                         vec3 background, RasterImages& images) {
+  require(camera.width == desc_.width && camera.height == desc_.height,
+          "the camera has another picture size");
+  require(gaussians.extra_channels == desc_.extra_channels,
+          "the Gaussians have another number of extra channels");
   require(sh_degree >= 0 && sh_degree <= 3, "expected an SH degree of 0 to 3");
   doForward(gaussians, camera, sh_degree, background, images);
   ready_ = desc_.gradients;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differentiable, depth-sorted rasteriser of Gaussians (methods 1.3-1.9, 2.2-2.5). The base class checks everything
-// once; a backend only schedules. One object serves one picture size; forward must precede backward.
+// Differentiable, depth-sorted rasteriser of Gaussians (methods 1.3-1.9, 2.2-2.5). The base class checks
+// everything once; a backend only schedules. One object serves one picture size; forward must precede
+// backward.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +19,20 @@ struct RasterDesc {
   bool geometry = false;      // expected depth, median depth, normal
   int extra_channels = 0;     // further blended floats a Gaussian, [0, 16]
   bool gradients = false;     // backward will be called
-  float dilation_px2 = 0;     // k added to the 2D covariance's diagonal (methods 1.3); 0: the 3D filter is in the scales
+  float dilation_px2 =
+      0;  // k added to the 2D covariance's diagonal (methods 1.3); 0: the 3D filter is in the scales
 };
 
-// Pictures of one view. Planes that the description does not ask for stay empty. As upstream gradients the same
-// struct holds dL/d(plane); an empty plane is a zero gradient.
+// Pictures of one view. Planes that the description does not ask for stay empty. As upstream gradients the
+// same struct holds dL/d(plane); an empty plane is a zero gradient.
 struct RasterImages {
   Planes color;         // 3: sum w c + T background, c = max(0, 0.5 + SH)
   Planes alpha;         // 1: sum w = 1 - T
   Planes depth;         // 1: expected z, (sum w z) / (sum w); 0 where nothing
   Planes median_depth;  // 1: z of the last Gaussian met while T > 0.5 before it; 0 where nothing
-  Planes normal;        // 3: sum w n in camera axes, not normalised; n = -normalize(Sigma_c^-1 t), towards the camera
-  Planes extra;         // extra_channels: sum w x
+  Planes
+      normal;  // 3: sum w n in camera axes, not normalised; n = -normalize(Sigma_c^-1 t), towards the camera
+  Planes extra;  // extra_channels: sum w x
 };
 
 // What a forward pass did, for benchmarks and gates; independent of the machine.
@@ -53,13 +56,13 @@ class Rasterizer {
   virtual ~Rasterizer() = default;
   const RasterDesc& desc() const { return desc_; }
 
-  // `gaussians` holds physical values; SH above `sh_degree` (0 to 3) is ignored. Images are resized as needed.
-  // `background`: what shows through, in the units of the colour.
+  // `gaussians` holds physical values; SH above `sh_degree` (0 to 3) is ignored. Images are resized as
+  // needed. `background`: what shows through, in the units of the colour.
   void forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree, vec3 background,
                RasterImages& images);
 
-  // dL/d(physical values), by central-difference-tested chain rule; overwrites `gradients` (same layout as the
-  // Gaussians). Uses the state of the last forward, whose Gaussians must still be alive and unchanged.
+  // dL/d(physical values), by central-difference-tested chain rule; overwrites `gradients` (same layout as
+  // the Gaussians). Uses the state of the last forward, whose Gaussians must still be alive and unchanged.
   void backward(const RasterImages& upstream, GaussianBuffers& gradients);
 
   // Per-Gaussian facts of the last forward: bounding radius in pixels, 0 = not drawn. size = count.
@@ -70,8 +73,8 @@ class Rasterizer {
   virtual BlendWeights blendWeights(const GaussianBuffers& gaussians, const Camera& camera) = 0;
 
  private:
-  virtual void doForward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree, vec3 background,
-                         RasterImages& images) = 0;
+  virtual void doForward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree,
+                         vec3 background, RasterImages& images) = 0;
   virtual void doBackward(const RasterImages& upstream, GaussianBuffers& gradients) = 0;
 
   RasterDesc desc_;

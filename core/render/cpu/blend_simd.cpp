@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Front-to-back blending of one 16x16 tile in 4x4 blocks, its gradients, and its weights (methods 1.5-1.7, 2.4-2.5).
+// Front-to-back blending of one 16x16 tile in 4x4 blocks, its gradients, and its weights
+// (methods 1.5-1.7, 2.4-2.5).
 #define BEAM_KERNELS_SIMD
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/render/cpu/blend_simd.cpp"
@@ -19,7 +20,7 @@ namespace HWY_NAMESPACE {
 constexpr int kMaxExtra = 16;
 
 struct TilePlace {
-  int x0, y0;       // first pixel
+  int x0, y0;  // first pixel
   int width, height;
 };
 TilePlace placeOf(const RasterState& s, int tile) {
@@ -32,7 +33,8 @@ HWY_INLINE void forEachPixel(const TilePlace& t, Body&& body) {
   const int rows = std::min(kTile, t.height - t.y0), columns = std::min(kTile, t.width - t.x0);
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < columns; ++x) {
-      body(static_cast<std::size_t>(t.y0 + y) * t.width + t.x0 + x, (y >> 2) * 4 + (x >> 2), (y & 3) * 4 + (x & 3));
+      body(static_cast<std::size_t>(t.y0 + y) * t.width + t.x0 + x, (y >> 2) * 4 + (x >> 2),
+           (y & 3) * 4 + (x & 3));
     }
   }
 }
@@ -116,15 +118,18 @@ TileCounts forwardTile(RasterState& state, const GaussianBuffers& g, int tile, c
   return counts;
 }
 
-// Upstream gradients of a tile and the running "rest": what the Gaussians behind contribute to the loss's gradient.
+// Upstream gradients of a tile and the running "rest": what the Gaussians behind contribute to the loss's
+// gradient.
 struct TileUpstream {
   alignas(64) BlockArray color[3], normal[3], depth_share, depth_mean, median, rest, transmittance;
   alignas(64) BlockArray extra[kMaxExtra];
 };
 
-// depth_share: dL/dD / W of the expected depth. rest starts as the whole blend's q plus the background's part.
+// depth_share: dL/dD / W of the expected depth. rest starts as the whole blend's q plus the background's
+// part.
 template <bool kGeometry, bool kExtra>
-void loadUpstream(const RasterState& state, int tile, const TilePlace& place, const PassGradients& in, TileUpstream& u) {
+void loadUpstream(const RasterState& state, int tile, const TilePlace& place, const PassGradients& in,
+                  TileUpstream& u) {
   alignas(64) BlockArray image, alpha;
   gatherBlocks(place, in.alpha, 0, alpha);
   std::fill_n(&u.rest[0][0], 256, 0.0f);
@@ -266,16 +271,20 @@ void weightsTile(const RasterState& state, int tile, std::vector<std::vector<Wei
 
 TileCounts forwardAny(RasterState& state, const GaussianBuffers& g, int tile, const PassImages& out) {
   if (state.extra_channels > 0) {
-    return state.geometry ? forwardTile<true, true>(state, g, tile, out) : forwardTile<false, true>(state, g, tile, out);
+    return state.geometry ? forwardTile<true, true>(state, g, tile, out)
+                          : forwardTile<false, true>(state, g, tile, out);
   }
-  return state.geometry ? forwardTile<true, false>(state, g, tile, out) : forwardTile<false, false>(state, g, tile, out);
+  return state.geometry ? forwardTile<true, false>(state, g, tile, out)
+                        : forwardTile<false, false>(state, g, tile, out);
 }
 
 void backwardAny(RasterState& state, const GaussianBuffers& g, int tile, const PassGradients& in) {
   if (state.extra_channels > 0) {
-    return state.geometry ? backwardTile<true, true>(state, g, tile, in) : backwardTile<false, true>(state, g, tile, in);
+    return state.geometry ? backwardTile<true, true>(state, g, tile, in)
+                          : backwardTile<false, true>(state, g, tile, in);
   }
-  return state.geometry ? backwardTile<true, false>(state, g, tile, in) : backwardTile<false, false>(state, g, tile, in);
+  return state.geometry ? backwardTile<true, false>(state, g, tile, in)
+                        : backwardTile<false, false>(state, g, tile, in);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -289,11 +298,13 @@ HWY_EXPORT(forwardAny);
 HWY_EXPORT(backwardAny);
 HWY_EXPORT(weightsTile);
 
-TileCounts blendTileForward(RasterState& state, const GaussianBuffers& gaussians, int tile, const PassImages& images) {
+TileCounts blendTileForward(RasterState& state, const GaussianBuffers& gaussians, int tile,
+                            const PassImages& images) {
   return HWY_DYNAMIC_DISPATCH(forwardAny)(state, gaussians, tile, images);
 }
 
-void blendTileBackward(RasterState& state, const GaussianBuffers& gaussians, int tile, const PassGradients& images) {
+void blendTileBackward(RasterState& state, const GaussianBuffers& gaussians, int tile,
+                       const PassGradients& images) {
   HWY_DYNAMIC_DISPATCH(backwardAny)(state, gaussians, tile, images);
 }
 

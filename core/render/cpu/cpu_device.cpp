@@ -14,20 +14,28 @@ namespace {
 
 std::int64_t targetBits(SimdTarget target) {
   switch (target) {
-    case SimdTarget::Auto: return 0;
-    case SimdTarget::Avx512: return HWY_AVX3;
-    case SimdTarget::Avx2: return HWY_AVX2;
-    case SimdTarget::Scalar: return HWY_STATIC_TARGET;
+    case SimdTarget::Auto:
+      return 0;
+    case SimdTarget::Avx512:
+      return HWY_AVX3;
+    case SimdTarget::Avx2:
+      return HWY_AVX2;
+    case SimdTarget::Scalar:
+      return HWY_STATIC_TARGET;
   }
   return 0;
 }
 
 const char* nameOf(SimdTarget target) {
   switch (target) {
-    case SimdTarget::Avx512: return "avx512";
-    case SimdTarget::Avx2: return "avx2";
-    case SimdTarget::Scalar: return "scalar";
-    case SimdTarget::Auto: break;
+    case SimdTarget::Avx512:
+      return "avx512";
+    case SimdTarget::Avx2:
+      return "avx2";
+    case SimdTarget::Scalar:
+      return "scalar";
+    case SimdTarget::Auto:
+      break;
   }
   return "auto";
 }
@@ -37,7 +45,8 @@ void chooseTarget(SimdTarget target) {
   hwy::SetSupportedTargetsForTest(0);
   const std::int64_t bits = targetBits(target), supported = hwy::SupportedTargets();
   if (target != SimdTarget::Auto && target != SimdTarget::Scalar && (supported & bits) == 0) {
-    throw Error(Error::Kind::Usage, fmt::format("this machine lacks the instruction set \"{}\"; use auto", nameOf(target)));
+    throw Error(Error::Kind::Usage,
+                fmt::format("this machine lacks the instruction set \"{}\"; use auto", nameOf(target)));
   }
   if (target != SimdTarget::Auto) hwy::SetSupportedTargetsForTest(bits);
 }
@@ -49,7 +58,9 @@ class CpuDevice final : public ComputeDevice {
     const char* set = (supported & HWY_AVX3) ? "AVX-512" : (supported & HWY_AVX2) ? "AVX2" : "scalar";
     return {"cpu", fmt::format("CPU, {} threads, {}", threadCount(), set)};
   }
-  std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc& desc) override { return makeCpuRasterizer(desc); }
+  std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc& desc) override {
+    return makeCpuRasterizer(desc);
+  }
   std::unique_ptr<Tracer> newTracer(const TracerDesc& desc, const GaussianCloud& cloud) override {
     return makeEmbreeTracer(desc, cloud);
   }

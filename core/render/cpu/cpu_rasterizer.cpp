@@ -116,8 +116,13 @@ class CpuRasterizer final : public Rasterizer {
       size(images.normal, w, h, 3);
     }
     if (state_.extra_channels > 0) size(images.extra, w, h, state_.extra_channels);
-    const PassImages pass{&images.color, &images.alpha, &images.depth, &images.median_depth, &images.normal,
-                          &images.extra, {background.x, background.y, background.z}};
+    const PassImages pass{&images.color,
+                          &images.alpha,
+                          &images.depth,
+                          &images.median_depth,
+                          &images.normal,
+                          &images.extra,
+                          {background.x, background.y, background.z}};
     parallelFor(tiles(), kTileGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         counts_[t] = blendTileForward(state_, gaussians, static_cast<int>(t), pass);
@@ -145,8 +150,9 @@ class CpuRasterizer final : public Rasterizer {
     parallelFor(tiles(), kTileGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) blendTileBackward(state_, g, static_cast<int>(t), pass);
     });
-    parallelFor(g.count, kGaussianGrain,
-                [&](std::size_t begin, std::size_t end) { chainGradients(g, state_, begin, end, gradients); });
+    parallelFor(g.count, kGaussianGrain, [&](std::size_t begin, std::size_t end) {
+      chainGradients(g, state_, begin, end, gradients);
+    });
   }
 
   RasterState state_;
@@ -158,6 +164,8 @@ class CpuRasterizer final : public Rasterizer {
 
 }  // namespace
 
-std::unique_ptr<Rasterizer> makeCpuRasterizer(const RasterDesc& desc) { return std::make_unique<CpuRasterizer>(desc); }
+std::unique_ptr<Rasterizer> makeCpuRasterizer(const RasterDesc& desc) {
+  return std::make_unique<CpuRasterizer>(desc);
+}
 
 }  // namespace beam

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU rasteriser: exact 4x4 blocks, threads over tiles, gradients summed in key order. Chosen through the device.
+// The CPU rasteriser: exact 4x4 blocks, threads over tiles, gradients summed in key order. Chosen through the
+// device.
 #pragma once
 
 #include <memory>

@@ -22,10 +22,12 @@ SsimRows rowsOf(int width) {
 
 class CpuTrainingOps final : public TrainingOps {
  public:
-  PhotometricLoss photometric(const Planes& image, const Planes& target, float lambda, Planes& gradient) override {
+  PhotometricLoss photometric(const Planes& image, const Planes& target, float lambda,
+                              Planes& gradient) override {
     prepare(image, gradient);
     const double values = static_cast<double>(image.planeSize()) * image.channels;
-    const float l1_scale = static_cast<float>((1 - lambda) / values), ssim_scale = static_cast<float>(-lambda / values);
+    const float l1_scale = static_cast<float>((1 - lambda) / values),
+                ssim_scale = static_cast<float>(-lambda / values);
     PhotometricLoss loss;
     for (int c = 0; c < image.channels; ++c) {
       channel(image.plane(c), target.plane(c), l1_scale, ssim_scale, gradient.plane(c));
@@ -62,7 +64,8 @@ class CpuTrainingOps final : public TrainingOps {
 
  private:
   void prepare(const Planes& image, Planes& gradient) {
-    if (gradient.width != image.width || gradient.height != image.height || gradient.channels != image.channels) {
+    if (gradient.width != image.width || gradient.height != image.height ||
+        gradient.channels != image.channels) {
       gradient = Planes(image.width, image.height, image.channels);
     }
     if (rows_.width == image.width && height_ == image.height) return;
@@ -106,7 +109,8 @@ class CpuTrainingOps final : public TrainingOps {
       for (std::size_t y = begin; y < end; ++y) {
         const float* in[3];
         for (int i = 0; i < 3; ++i) in[i] = rowOf(maps_[i], static_cast<int>(y));
-        row_l1_[y] = ssimGradientRow(rows_, in, image + y * w, target + y * w, l1_scale, ssim_scale, gradient + y * w);
+        row_l1_[y] =
+            ssimGradientRow(rows_, in, image + y * w, target + y * w, l1_scale, ssim_scale, gradient + y * w);
       }
     });
   }

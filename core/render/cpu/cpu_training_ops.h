@@ -28,19 +28,20 @@ struct SsimRowResult {
   double ssim = 0, l1 = 0;
 };
 // `blurred`: row y of the five planes, rows y-5 ... y+5 readable at distance `stride`. Writes the row-blurred
-// derivative maps (sum over pixels of SSIM) into the three rows `out`. `scratch`: 3 x stride floats, zero padded.
+// derivative maps (sum over pixels of SSIM) into the three rows `out`. `scratch`: 3 x stride floats, zero
+// padded.
 double ssimRow(const SsimRows& s, const float* const blurred[5], float* scratch, float* const out[3]);
 // gradient = l1_scale * sign(a - b) + ssim_scale * dS/da of one row; returns the sum of |a - b|.
-double ssimGradientRow(const SsimRows& s, const float* const maps[3], const float* a, const float* b, float l1_scale,
-                       float ssim_scale, float* gradient);
+double ssimGradientRow(const SsimRows& s, const float* const maps[3], const float* a, const float* b,
+                       float l1_scale, float ssim_scale, float* gradient);
 
 struct AdamRange {
   float *parameter, *first, *second;
   const float* gradient;
   std::size_t count;  // multiple of 16
   float beta1, beta2, epsilon;
-  float rate;              // learning rate / (1 - beta1^t)
-  float inverse_root;      // 1 / sqrt(1 - beta2^t)
+  float rate;          // learning rate / (1 - beta1^t)
+  float inverse_root;  // 1 / sqrt(1 - beta2^t)
 };
 void adamStep(const AdamRange& range);
 

@@ -45,8 +45,8 @@ Particle particleOf(const GaussianCloud& cloud, std::size_t i, float cut_respons
   return p;
 }
 
-// opacity * response at the maximum along the ray, in fixed point; 0 outside the cut, behind the origin, or (when
-// asked) where the cut ellipsoid holds the origin (methods 4.3).
+// opacity * response at the maximum along the ray, in fixed point; 0 outside the cut, behind the origin, or
+// (when asked) where the cut ellipsoid holds the origin (methods 4.3).
 std::uint64_t alphaAlong(const Particle& p, const Ray& ray, bool ignore_containing) {
   vec3 o, d;
   for (int k = 0; k < 3; ++k) {
@@ -76,9 +76,11 @@ class EmbreeTracer final : public Tracer {
       const Particle p = particleOf(cloud, i, desc.cut_response);
       if (p.cut2 > 0) particles_.push_back(p);
     }
-    // A fixed instruction set: traversal order must not depend on the machine, sums do not depend on the order.
+    // A fixed instruction set: traversal order must not depend on the machine, sums do not depend on the
+    // order.
     device_ = rtcNewDevice("threads=1,isa=avx2");
-    if (!device_) throw Error(Error::Kind::Bug, fmt::format("Embree did not start: code {}", rtcGetDeviceError(nullptr)));
+    if (!device_)
+      throw Error(Error::Kind::Bug, fmt::format("Embree did not start: code {}", rtcGetDeviceError(nullptr)));
     rtcSetDeviceMemoryMonitorFunction(device_, &EmbreeTracer::countMemory, this);
     build();
   }

@@ -21,7 +21,8 @@ using L = PlaneLayout;
 CameraConstants<Lanes> cameraLanes(const RasterCameraConstants& c) {
   const auto f = [](double v) { return Lanes(static_cast<float>(v)); };
   CameraConstants<Lanes> k;
-  for (int i = 0; i < 3; ++i) k.camera_from_world.r[i] = {f(c.rotation[3 * i]), f(c.rotation[3 * i + 1]), f(c.rotation[3 * i + 2])};
+  for (int i = 0; i < 3; ++i)
+    k.camera_from_world.r[i] = {f(c.rotation[3 * i]), f(c.rotation[3 * i + 1]), f(c.rotation[3 * i + 2])};
   k.translation = {f(c.translation[0]), f(c.translation[1]), f(c.translation[2])};
   k.center = {f(c.center[0]), f(c.center[1]), f(c.center[2])};
   const Intrinsics& n = c.intrinsics;
@@ -36,18 +37,23 @@ CameraConstants<Lanes> cameraLanes(const RasterCameraConstants& c) {
 HWY_INLINE GaussianIn<Lanes> loadGaussians(const GaussianBuffers& g, std::size_t i) {
   const auto at = [&](int plane) HWY_ATTR { return load(g.plane(plane) + i); };
   return {{at(L::kPosition), at(L::kPosition + 1), at(L::kPosition + 2)},
-          at(L::kRotation), at(L::kRotation + 1), at(L::kRotation + 2), at(L::kRotation + 3),
+          at(L::kRotation),
+          at(L::kRotation + 1),
+          at(L::kRotation + 2),
+          at(L::kRotation + 3),
           {at(L::kScale), at(L::kScale + 1), at(L::kScale + 2)}};
 }
 
-HWY_INLINE Vec3<Lanes> viewDirection(const Vec3<Lanes>& position, const CameraConstants<Lanes>& k, Lanes& inverse_distance) {
+HWY_INLINE Vec3<Lanes> viewDirection(const Vec3<Lanes>& position, const CameraConstants<Lanes>& k,
+                                     Lanes& inverse_distance) {
   const Vec3<Lanes> d = position - k.center;
   inverse_distance = Lanes(1.0f) / sqrt(max(dot(d, d), Lanes(1e-12f)));
   return inverse_distance * d;
 }
 
 // max(0, 0.5 + SH) a channel.
-HWY_INLINE void colorOf(const GaussianBuffers& g, std::size_t i, const Vec3<Lanes>& direction, int degree, Lanes* rgb) {
+HWY_INLINE void colorOf(const GaussianBuffers& g, std::size_t i, const Vec3<Lanes>& direction, int degree,
+                        Lanes* rgb) {
   Lanes basis[16];
   shBasisOf(direction, degree, basis);
   const int count = (degree + 1) * (degree + 1);
@@ -59,10 +65,11 @@ HWY_INLINE void colorOf(const GaussianBuffers& g, std::size_t i, const Vec3<Lane
 }
 
 // Ellipse data that the blend reads, scaled to base 2. `extent2`: squared radius in standard deviations.
-HWY_INLINE void storeScreen(const Projection<Lanes>& p, const CameraConstants<Lanes>& k, Lanes opacity, Lanes extent2,
-                            const Lanes* rgb, float (*out)[16]) {
+HWY_INLINE void storeScreen(const Projection<Lanes>& p, const CameraConstants<Lanes>& k, Lanes opacity,
+                            Lanes extent2, const Lanes* rgb, float (*out)[16]) {
   const Lanes inverse_det = Lanes(1.0f) / p.det, log2e(1.44269504f), half(0.5f);
-  const Lanes a = -half * log2e * p.c * inverse_det, height = sqrt(p.c * extent2), width = sqrt(p.a * extent2);
+  const Lanes a = -half * log2e * p.c * inverse_det, height = sqrt(p.c * extent2),
+              width = sqrt(p.a * extent2);
   store(fma(k.fx, p.t.x * p.inverse_z, k.cx), out[0]);
   store(fma(k.fy, p.t.y * p.inverse_z, k.cy), out[1]);
   store(a, out[2]);
@@ -78,7 +85,8 @@ HWY_INLINE void storeScreen(const Projection<Lanes>& p, const CameraConstants<La
   store(max(width, height), out[14]);
 }
 
-// Squared extent in standard deviations, 2 ln(255 o), grown a little against rounding; negative: never reaches 1/255.
+// Squared extent in standard deviations, 2 ln(255 o), grown a little against rounding; negative: never
+// reaches 1/255.
 HWY_INLINE Lanes squaredExtent(Lanes opacity) {
   float o[16], e[16];
   store(opacity, o);
@@ -88,7 +96,8 @@ HWY_INLINE Lanes squaredExtent(Lanes opacity) {
 
 void projectRange(const GaussianBuffers& g, RasterState& state, std::size_t begin, std::size_t end) {
   const CameraConstants<Lanes> k = cameraLanes(state.camera);
-  const float width = static_cast<float>(state.camera.width), height = static_cast<float>(state.camera.height);
+  const float width = static_cast<float>(state.camera.width),
+              height = static_cast<float>(state.camera.height);
   for (std::size_t i = begin; i < end; i += 16) {
     const int used = static_cast<int>(std::min<std::size_t>(16, end - i));
     const GaussianIn<Lanes> in = loadGaussians(g, i);
@@ -109,14 +118,16 @@ void projectRange(const GaussianBuffers& g, RasterState& state, std::size_t begi
     alignas(64) float d[16][16];
     if (state.geometry) {
       const DepthSurface<Lanes> f = depthSurface(p, in.scale, k);
-      const Lanes values[9] = {f.normal.x, f.normal.y, f.normal.z, f.ax, f.ay, f.mxx, f.mxy, f.myy, f.inverse_kappa};
+      const Lanes values[9] = {f.normal.x, f.normal.y, f.normal.z, f.ax,           f.ay,
+                               f.mxx,      f.mxy,      f.myy,      f.inverse_kappa};
       for (int c = 0; c < 9; ++c) store(values[c], d[c]);
     }
     for (int j = 0; j < used; ++j) {
       float* out = &splats[j].x;
       for (int c = 0; c < 15; ++c) out[c] = s[c][j];
       const ScreenSplat& q = splats[j];
-      const bool on_screen = q.x + q.radius > 0 && q.y + q.radius > 0 && q.x - q.radius < width && q.y - q.radius < height;
+      const bool on_screen =
+          q.x + q.radius > 0 && q.y + q.radius > 0 && q.x - q.radius < width && q.y - q.radius < height;
       if (!((drawn >> j) & 1) || !on_screen) splats[j].z = 0;
       state.radius[i + j] = splats[j].z > 0 ? q.radius : 0;
       if (!state.geometry) continue;
@@ -137,8 +148,8 @@ HWY_INLINE void gatherSlots(const RasterState& state, std::size_t i, float* sum)
 }
 
 // SH coefficients and, through the view direction, the position.
-HWY_INLINE void colorBackward(const GaussianBuffers& g, std::size_t i, const CameraConstants<Lanes>& k, int degree,
-                              const Lanes* d_rgb, GaussianBuffers& out, Vec3<Lanes>& d_position) {
+HWY_INLINE void colorBackward(const GaussianBuffers& g, std::size_t i, const CameraConstants<Lanes>& k,
+                              int degree, const Lanes* d_rgb, GaussianBuffers& out, Vec3<Lanes>& d_position) {
   const Vec3<Lanes> position = {load(g.plane(0) + i), load(g.plane(1) + i), load(g.plane(2) + i)};
   Lanes inverse_distance, basis[16];
   const Vec3<Lanes> direction = viewDirection(position, k, inverse_distance);
@@ -205,8 +216,8 @@ void chainRange(const GaussianBuffers& g, const RasterState& state, std::size_t 
     } else {
       for (int plane = L::kSh; plane < L::kExtra; ++plane) std::fill_n(out.plane(plane) + i, 16, 0.0f);
     }
-    const Lanes values[11] = {o.position.x, o.position.y, o.position.z, o.qw, o.qx, o.qy, o.qz,
-                              o.scale.x,    o.scale.y,    o.scale.z,    o.opacity};
+    const Lanes values[11] = {o.position.x, o.position.y, o.position.z, o.qw,      o.qx,     o.qy,
+                              o.qz,         o.scale.x,    o.scale.y,    o.scale.z, o.opacity};
     for (int plane = 0; plane < 11; ++plane) store(keepIf(valid, values[plane]), out.plane(plane) + i);
     for (int e = 0; e < state.extra_channels; ++e) store(column(next + e), out.plane(L::kExtra + e) + i);
   }
@@ -226,8 +237,8 @@ void projectSplats(const GaussianBuffers& gaussians, RasterState& state, std::si
   HWY_DYNAMIC_DISPATCH(projectRange)(gaussians, state, begin, end);
 }
 
-void chainGradients(const GaussianBuffers& gaussians, const RasterState& state, std::size_t begin, std::size_t end,
-                    GaussianBuffers& gradients) {
+void chainGradients(const GaussianBuffers& gaussians, const RasterState& state, std::size_t begin,
+                    std::size_t end, GaussianBuffers& gradients) {
   HWY_DYNAMIC_DISPATCH(chainRange)(gaussians, state, begin, end, gradients);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the steps of the CPU rasteriser hand to each other: projected Gaussians, keys sorted by tile and depth, and the
-// pictures of a pass. Plain data; the steps are project, sort and bin, blend, gather.
+// What the steps of the CPU rasteriser hand to each other: projected Gaussians, keys sorted by tile and
+// depth, and the pictures of a pass. Plain data; the steps are project, sort and bin, blend, gather.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,25 @@
 
 namespace beam {
 
-inline constexpr int kTile = 16;         // pixels a side; 4x4 blocks of 4x4 pixels, one block = 16 lanes
+inline constexpr int kTile = 16;  // pixels a side; 4x4 blocks of 4x4 pixels, one block = 16 lanes
 inline constexpr float kMinAlpha = 1 / 255.0f;
 inline constexpr float kMaxAlpha = 0.99f;
 inline constexpr float kMinTransmittance = 1e-4f;
 inline constexpr float kNear_m = 0.05f;
 
-// Screen ellipse and colour. exponent (base 2) at d = pixel - centre: a dx^2 + b dx dy + c dy^2, the Gaussian reaches
-// alpha 1/255 where it equals -limit.
+// Screen ellipse and colour. exponent (base 2) at d = pixel - centre: a dx^2 + b dx dy + c dy^2, the Gaussian
+// reaches alpha 1/255 where it equals -limit.
 struct alignas(64) ScreenSplat {
-  float x, y;                  // centre, pixels
-  float a, b, c;               // scaled conic
+  float x, y;     // centre, pixels
+  float a, b, c;  // scaled conic
   float opacity;
   float red, green, blue;
-  float z;                     // of the centre, metres; 0: not drawn
-  float rightmost_y;           // row of the ellipse's rightmost point, relative to the centre
-  float half_height;           // of the ellipse
+  float z;            // of the centre, metres; 0: not drawn
+  float rightmost_y;  // row of the ellipse's rightmost point, relative to the centre
+  float half_height;  // of the ellipse
   float limit;
-  float inverse_2a;            // of the span's quadratic: -1 / (2 a)
-  float radius;                // bounding radius, pixels
+  float inverse_2a;  // of the span's quadratic: -1 / (2 a)
+  float radius;      // bounding radius, pixels
   float unused;
 };
 
@@ -74,8 +74,8 @@ struct RasterState {
   std::vector<TileEntry> entries;         // by tile, then depth
 
   // After forward: transmittance of every pixel, negative where the pixel was opaque before its last entry.
-  AlignedVector<float> transmittance;     // [tile][block][16]
-  AlignedVector<float> slot_gradients;    // [slot][slot_floats]
+  AlignedVector<float> transmittance;   // [tile][block][16]
+  AlignedVector<float> slot_gradients;  // [slot][slot_floats]
   std::uint64_t pairs_evaluated = 0, pairs_blended = 0;
 };
 
@@ -109,19 +109,23 @@ struct PassImages {
 struct TileCounts {
   std::uint64_t evaluated = 0, blended = 0;
 };
-TileCounts blendTileForward(RasterState& state, const GaussianBuffers& gaussians, int tile, const PassImages& images);
+TileCounts blendTileForward(RasterState& state, const GaussianBuffers& gaussians, int tile,
+                            const PassImages& images);
 
 struct PassGradients {
-  const Planes *color, *alpha, *depth, *median_depth, *normal, *extra;  // upstream; null or empty: zero
-  const Planes *image_color, *image_depth, *image_normal, *image_extra; // of the forward pass
+  const Planes *color, *alpha, *depth, *median_depth, *normal, *extra;   // upstream; null or empty: zero
+  const Planes *image_color, *image_depth, *image_normal, *image_extra;  // of the forward pass
 };
-void blendTileBackward(RasterState& state, const GaussianBuffers& gaussians, int tile, const PassGradients& images);
+void blendTileBackward(RasterState& state, const GaussianBuffers& gaussians, int tile,
+                       const PassGradients& images);
 
-// Sums the slots of Gaussians [begin, end) in slot order and chains to the physical values; begin a multiple of 16.
-void chainGradients(const GaussianBuffers& gaussians, const RasterState& state, std::size_t begin, std::size_t end,
-                    GaussianBuffers& gradients);
+// Sums the slots of Gaussians [begin, end) in slot order and chains to the physical values; begin a multiple
+// of 16.
+void chainGradients(const GaussianBuffers& gaussians, const RasterState& state, std::size_t begin,
+                    std::size_t end, GaussianBuffers& gradients);
 
-// Weights of one tile, front to back a pixel: calls per pixel lists of (Gaussian, weight); lists has 256 entries.
+// Weights of one tile, front to back a pixel: calls per pixel lists of (Gaussian, weight); lists has 256
+// entries.
 struct WeightEntry {
   std::uint32_t gaussian;
   float weight;

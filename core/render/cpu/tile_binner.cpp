@@ -68,7 +68,8 @@ void TileBinner::listTiles(RasterState& state) {
       const ScreenSplat& s = state.splats[i];
       if (s.z <= 0) continue;
       const int row0 = std::max(0, static_cast<int>(std::floor((s.y - s.half_height) / kTile)));
-      const int row1 = std::min(state.tiles_y - 1, static_cast<int>(std::floor((s.y + s.half_height) / kTile)));
+      const int row1 =
+          std::min(state.tiles_y - 1, static_cast<int>(std::floor((s.y + s.half_height) / kTile)));
       for (int row = row0; row <= row1; ++row) {
         const float top = static_cast<float>(row * kTile) + 0.5f - s.y;
         float low = 0, high = 0;
@@ -90,7 +91,8 @@ void TileBinner::listTiles(RasterState& state) {
   slot_tile_.resize(total);
   parallelFor(count, 1, [&](std::size_t p, std::size_t) {
     const std::vector<std::uint32_t>& tiles = pieces_[p].tiles;
-    if (!tiles.empty()) std::copy(tiles.begin(), tiles.end(), slot_tile_.begin() + state.first_slot[p * kPiece]);
+    if (!tiles.empty())
+      std::copy(tiles.begin(), tiles.end(), slot_tile_.begin() + state.first_slot[p * kPiece]);
   });
 }
 

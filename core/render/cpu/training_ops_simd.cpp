@@ -20,11 +20,14 @@ alignas(64) constexpr float kIndex[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 
 // Blur at p[0 .. 16) across elements `step` apart.
 HWY_INLINE Lanes blurAt(const SsimRows& s, const float* p, std::ptrdiff_t step) {
   Lanes r = Lanes(s.window[0]) * load(p);
-  for (int i = 1; i <= kSsimReach; ++i) r = fma(Lanes(s.window[i]), load(p - i * step) + load(p + i * step), r);
+  for (int i = 1; i <= kSsimReach; ++i)
+    r = fma(Lanes(s.window[i]), load(p - i * step) + load(p + i * step), r);
   return r;
 }
 
-HWY_INLINE Mask insideRow(const SsimRows& s, int x) { return load(kIndex) < Lanes(static_cast<float>(s.width - x)); }
+HWY_INLINE Mask insideRow(const SsimRows& s, int x) {
+  return load(kIndex) < Lanes(static_cast<float>(s.width - x));
+}
 
 // Loads 16 pixels of an unpadded row; pixels behind its end are zero.
 HWY_INLINE Lanes loadRow(const SsimRows& s, const float* row, int x) {
@@ -75,8 +78,8 @@ double rowTerms(const SsimRows& s, const float* const* blurred, float* scratch, 
   return total[0];
 }
 
-double gradientRow(const SsimRows& s, const float* const* maps, const float* a, const float* b, float l1_scale,
-                   float ssim_scale, float* gradient) {
+double gradientRow(const SsimRows& s, const float* const* maps, const float* a, const float* b,
+                   float l1_scale, float ssim_scale, float* gradient) {
   Lanes sum(0.0f);
   const Lanes zero(0.0f), two(2.0f), l1(l1_scale), scale(ssim_scale);
   for (int x = 0; x < s.width; x += 16) {
@@ -126,14 +129,15 @@ HWY_EXPORT(rowTerms);
 HWY_EXPORT(gradientRow);
 HWY_EXPORT(adamRange);
 
-void ssimBlurProducts(const SsimRows& s, const float* a, const float* b, float* scratch, float* const out[5]) {
+void ssimBlurProducts(const SsimRows& s, const float* a, const float* b, float* scratch,
+                      float* const out[5]) {
   HWY_DYNAMIC_DISPATCH(blurProducts)(s, a, b, scratch, out);
 }
 double ssimRow(const SsimRows& s, const float* const blurred[5], float* scratch, float* const out[3]) {
   return HWY_DYNAMIC_DISPATCH(rowTerms)(s, blurred, scratch, out);
 }
-double ssimGradientRow(const SsimRows& s, const float* const maps[3], const float* a, const float* b, float l1_scale,
-                       float ssim_scale, float* gradient) {
+double ssimGradientRow(const SsimRows& s, const float* const maps[3], const float* a, const float* b,
+                       float l1_scale, float ssim_scale, float* gradient) {
   return HWY_DYNAMIC_DISPATCH(gradientRow)(s, maps, a, b, l1_scale, ssim_scale, gradient);
 }
 void adamStep(const AdamRange& range) { HWY_DYNAMIC_DISPATCH(adamRange)(range); }

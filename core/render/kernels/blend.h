@@ -35,8 +35,8 @@ BEAM_INLINE Lanes rightEnd(const ScreenSplat& s, Lanes y) {
   return (by + sqrt(discriminant)) * Lanes(s.inverse_2a);
 }
 
-// Bit 4 row + column for each of the tile's 16 blocks that the ellipse touches; (x, y): centre relative to the
-// tile's first pixel centre.
+// Bit 4 row + column for each of the tile's 16 blocks that the ellipse touches; (x, y): centre relative to
+// the tile's first pixel centre.
 BEAM_INLINE unsigned touchedBlocks(const ScreenSplat& s, float x, float y) {
   const Lanes h(s.half_height), top = load(kBlockY) - Lanes(y), bottom = top + Lanes(3.0f);
   const Lanes ya = max(top, -h), yb = min(bottom, h), extreme(s.rightmost_y);
@@ -47,10 +47,10 @@ BEAM_INLINE unsigned touchedBlocks(const ScreenSplat& s, float x, float y) {
 }
 
 struct BlockResponse {
-  Lanes dx, dy;       // pixel - centre
-  Lanes response;     // G in (0, 1]
-  Lanes alpha;        // min(0.99, o G), 0 where it is no hit
-  Mask hit;           // o G >= 1/255 and the pixel is not opaque
+  Lanes dx, dy;    // pixel - centre
+  Lanes response;  // G in (0, 1]
+  Lanes alpha;     // min(0.99, o G), 0 where it is no hit
+  Mask hit;        // o G >= 1/255 and the pixel is not opaque
 };
 
 // (x, y): centre relative to the block's first pixel centre; `transmittance` < 0 marks opaque pixels.
@@ -66,8 +66,8 @@ BEAM_INLINE BlockResponse respond(const ScreenSplat& s, float x, float y, Lanes 
   return r;
 }
 
-// Takes the pixels that this Gaussian would make opaque out of the hit (methods 1.5: they stop before it). Returns
-// the weights alpha T and moves the transmittance on.
+// Takes the pixels that this Gaussian would make opaque out of the hit (methods 1.5: they stop before it).
+// Returns the weights alpha T and moves the transmittance on.
 BEAM_INLINE Lanes weigh(BlockResponse& r, Lanes& transmittance) {
   const Lanes w = r.alpha * transmittance, after = transmittance - w;
   const Mask stop = r.hit & (after < Lanes(kMinTransmittance));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where kernel formulas live (contract 8). A file that defines BEAM_KERNELS_SIMD and includes hwy/foreach_target.h
-// reads every kernel header once an instruction set, in beam::<target>; any other file reads it once, in
-// beam::scalar, with plain floats, doubles or arrays.
+// Where kernel formulas live (contract 8). A file that defines BEAM_KERNELS_SIMD and includes
+// hwy/foreach_target.h reads every kernel header once an instruction set, in beam::<target>; any other file
+// reads it once, in beam::scalar, with plain floats, doubles or arrays.
 #include <bit>
 #include <cmath>
 #include <cstdint>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes: a pack of 16 floats with operators, one formula for AVX-512 (one vector), AVX2 (two) and plain arrays; all
-// three give the same bits: explicit fma, exact division and square root, sums of a fixed shape (contract 7 and 8).
-// Include between the passes of hwy/foreach_target.h (toggling guard) in files that define BEAM_KERNELS_SIMD; elsewhere
-// the array form in beam::scalar is what one gets. Never pass Lanes across files.
+// Lanes: a pack of 16 floats with operators, one formula for AVX-512 (one vector), AVX2 (two) and plain
+// arrays; all three give the same bits: explicit fma, exact division and square root, sums of a fixed shape
+// (contract 7 and 8). Include between the passes of hwy/foreach_target.h (toggling guard) in files that
+// define BEAM_KERNELS_SIMD; elsewhere the array form in beam::scalar is what one gets. Never pass Lanes
+// across files.
 #include "core/render/kernels/kernel_space.h"
 
 #ifdef BEAM_KERNELS_SIMD
@@ -45,12 +46,12 @@ struct Lanes {
   }
 };
 
-#define BEAM_LANEWISE(expression)                        \
-  Lanes r;                                               \
+#define BEAM_LANEWISE(expression)                         \
+  Lanes r;                                                \
   for (int i = 0; i < kVectors; ++i) r.v[i] = expression; \
   return r
-#define BEAM_MASKWISE(expression)                        \
-  Mask r;                                                \
+#define BEAM_MASKWISE(expression)                         \
+  Mask r;                                                 \
   for (int i = 0; i < kVectors; ++i) r.m[i] = expression; \
   return r
 
@@ -75,7 +76,9 @@ HWY_INLINE Mask operator>=(Lanes a, Lanes b) { BEAM_MASKWISE(hn::Ge(a.v[i], b.v[
 HWY_INLINE Mask operator&(Mask a, Mask b) { BEAM_MASKWISE(hn::And(a.m[i], b.m[i])); }
 HWY_INLINE Mask operator|(Mask a, Mask b) { BEAM_MASKWISE(hn::Or(a.m[i], b.m[i])); }
 HWY_INLINE Mask operator!(Mask a) { BEAM_MASKWISE(hn::Not(a.m[i])); }
-HWY_INLINE Lanes select(Mask m, Lanes yes, Lanes no) { BEAM_LANEWISE(hn::IfThenElse(m.m[i], yes.v[i], no.v[i])); }
+HWY_INLINE Lanes select(Mask m, Lanes yes, Lanes no) {
+  BEAM_LANEWISE(hn::IfThenElse(m.m[i], yes.v[i], no.v[i]));
+}
 HWY_INLINE Lanes keepIf(Mask m, Lanes a) { BEAM_LANEWISE(hn::IfThenElseZero(m.m[i], a.v[i])); }
 HWY_INLINE Lanes min(Lanes a, Lanes b) { return select(a < b, a, b); }
 HWY_INLINE Lanes max(Lanes a, Lanes b) { return select(a > b, a, b); }
@@ -183,7 +186,9 @@ inline unsigned bitsOf(Mask m) {
 }
 inline bool any(Mask m) { return bitsOf(m) != 0; }
 inline Lanes roundNearest(Lanes a) { BEAM_LANEWISE(std::nearbyint(a.v[i])); }
-inline Lanes powerOfTwo(Lanes n) { BEAM_LANEWISE(std::bit_cast<float>((static_cast<std::int32_t>(n.v[i]) + 127) << 23)); }
+inline Lanes powerOfTwo(Lanes n) {
+  BEAM_LANEWISE(std::bit_cast<float>((static_cast<std::int32_t>(n.v[i]) + 127) << 23));
+}
 
 #undef BEAM_LANEWISE
 #undef BEAM_MASKWISE
@@ -202,15 +207,23 @@ inline void sum4(Lanes a, Lanes b, Lanes c, Lanes d, float* out) {
 #if !BEAM_KERNELS_VECTOR
 // One float or double as the F of a formula: for oracles and tests.
 template <class T>
-inline T fma(T a, T b, T c) { return std::fma(a, b, c); }
+inline T fma(T a, T b, T c) {
+  return std::fma(a, b, c);
+}
 template <class T>
-inline T nfma(T a, T b, T c) { return std::fma(-a, b, c); }
+inline T nfma(T a, T b, T c) {
+  return std::fma(-a, b, c);
+}
 inline float sqrt(float a) { return std::sqrt(a); }
 inline double sqrt(double a) { return std::sqrt(a); }
 template <class T>
-inline T select(bool m, T yes, T no) { return m ? yes : no; }
+inline T select(bool m, T yes, T no) {
+  return m ? yes : no;
+}
 template <class T>
-inline T keepIf(bool m, T a) { return m ? a : T(0); }
+inline T keepIf(bool m, T a) {
+  return m ? a : T(0);
+}
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline float min(float a, float b) { return a < b ? a : b; }

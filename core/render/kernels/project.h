@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One Gaussian seen by one camera: screen ellipse, colour, depth surface and normal (methods 1.2-1.3, 2.1-2.3), and the
-// gradients of all of them (1.7-1.9, 2.5). Templates over F: Lanes, float or double. Include like lanes.h.
+// One Gaussian seen by one camera: screen ellipse, colour, depth surface and normal
+// (methods 1.2-1.3, 2.1-2.3), and the gradients of all of them (1.7-1.9, 2.5). Templates over F: Lanes, float
+// or double. Include like lanes.h.
 #include "core/render/kernels/lanes.h"
 
 #ifdef BEAM_KERNELS_SIMD
@@ -67,8 +68,9 @@ struct CameraConstants {
   Mat3<F> camera_from_world;
   Vec3<F> translation, center;  // center: of the camera, in world axes
   F fx, fy, cx, cy;
-  F low_x, high_x, low_y, high_y;  // bounds of x/z and y/z inside the Jacobian: the picture grown by 0.3 (methods 1.3)
-  F dilation;                      // px^2
+  F low_x, high_x, low_y,
+      high_y;  // bounds of x/z and y/z inside the Jacobian: the picture grown by 0.3 (methods 1.3)
+  F dilation;  // px^2
 };
 
 template <class F>
@@ -98,7 +100,8 @@ BEAM_INLINE Mat3<F> rotationOf(F w, F x, F y, F z) {
 }
 
 template <class F>
-BEAM_INLINE Vec3<F> jacobianRow(const Vec3<F>& row, const Vec3<F>& row_z, F factor, F ratio, const Vec3<F>& s) {
+BEAM_INLINE Vec3<F> jacobianRow(const Vec3<F>& row, const Vec3<F>& row_z, F factor, F ratio,
+                                const Vec3<F>& s) {
   return {factor * nfma(ratio, row_z.x, row.x) * s.x, factor * nfma(ratio, row_z.y, row.y) * s.y,
           factor * nfma(ratio, row_z.z, row.z) * s.z};
 }
@@ -126,9 +129,9 @@ BEAM_INLINE Projection<F> projectGaussian(const GaussianIn<F>& g, const CameraCo
   return p;
 }
 
-// Depth along the optical axis of the point of maximum response on the ray of a pixel that lies (dx, dy) pixels from
-// the centre: z = tz (1 + q) / (1 + 2 q + s), q = ax dx + ay dy, s = mxx dx^2 + mxy dx dy + myy dy^2; and the normal of
-// the intersection plane (methods 2.1-2.3).
+// Depth along the optical axis of the point of maximum response on the ray of a pixel that lies (dx, dy)
+// pixels from the centre: z = tz (1 + q) / (1 + 2 q + s), q = ax dx + ay dy, s = mxx dx^2 + mxy dx dy + myy
+// dy^2; and the normal of the intersection plane (methods 2.1-2.3).
 template <class F>
 struct DepthSurface {
   Vec3<F> normal;  // camera axes, unit, towards the camera
@@ -144,7 +147,8 @@ BEAM_INLINE Vec3<F> inverseSquares(const Vec3<F>& s) {
 }
 
 template <class F>
-BEAM_INLINE DepthSurface<F> depthSurface(const Projection<F>& p, const Vec3<F>& scale, const CameraConstants<F>& k) {
+BEAM_INLINE DepthSurface<F> depthSurface(const Projection<F>& p, const Vec3<F>& scale,
+                                         const CameraConstants<F>& k) {
   const Vec3<F> d2 = inverseSquares(scale), pt = mulTransposed(p.rc, p.t);
   const Vec3<F> dp = {d2.x * pt.x, d2.y * pt.y, d2.z * pt.z};
   const Vec3<F> w = mul(p.rc, dp);
@@ -165,8 +169,9 @@ BEAM_INLINE DepthSurface<F> depthSurface(const Projection<F>& p, const Vec3<F>& 
   return s;
 }
 
-// Sums over the pixels of a Gaussian; d = pixel - centre. Screen part: v = dL/dalpha * response at unclamped hits,
-// first and second moments of v. Depth part (methods 2.5): h = dL/dz / kappa(pixel) and z h with their moments.
+// Sums over the pixels of a Gaussian; d = pixel - centre. Screen part: v = dL/dalpha * response at unclamped
+// hits, first and second moments of v. Depth part (methods 2.5): h = dL/dz / kappa(pixel) and z h with their
+// moments.
 template <class F>
 struct ScreenGradient {
   Vec3<F> color;
@@ -191,10 +196,11 @@ struct CameraGradient {
   Vec3<F> scale;
 };
 
-// From the screen ellipse and the projected centre (methods 1.8, through the factor M = J Rc S: dL/dM = 2 G M).
+// From the screen ellipse and the projected centre (methods 1.8, through the factor M = J Rc S: dL/dM = 2 G
+// M).
 template <class F>
-BEAM_INLINE CameraGradient<F> ellipseBackward(const ScreenGradient<F>& s, const Projection<F>& p, const Vec3<F>& scale,
-                                              F opacity, const CameraConstants<F>& k) {
+BEAM_INLINE CameraGradient<F> ellipseBackward(const ScreenGradient<F>& s, const Projection<F>& p,
+                                              const Vec3<F>& scale, F opacity, const CameraConstants<F>& k) {
   const F inverse_det = F(1.0f) / p.det;
   const F ka = p.c * inverse_det, kb = -p.b * inverse_det, kc = p.a * inverse_det;  // conic [[ka kb] [kb kc]]
   const F half(0.5f);
@@ -205,7 +211,9 @@ BEAM_INLINE CameraGradient<F> ellipseBackward(const ScreenGradient<F>& s, const 
   const F g00 = fma(ux, ka, uy * kb), g01 = fma(ux, kb, uy * kc), g11 = fma(vx, kb, vy * kc);
   const F two(2.0f), jx = k.fx * p.inverse_z, jy = k.fy * p.inverse_z;
   const Vec3<F> gm0 = two * (g00 * p.m0 + g01 * p.m1), gm1 = two * (g01 * p.m0 + g11 * p.m1);
-  const auto times = [](const Vec3<F>& u, const Vec3<F>& v) { return Vec3<F>{u.x * v.x, u.y * v.y, u.z * v.z}; };
+  const auto times = [](const Vec3<F>& u, const Vec3<F>& v) {
+    return Vec3<F>{u.x * v.x, u.y * v.y, u.z * v.z};
+  };
   const Vec3<F> e0 = times(gm0, scale), e1 = times(gm1, scale);
   CameraGradient<F> g;
   g.rc.r[0] = jx * e0;
@@ -270,8 +278,8 @@ BEAM_INLINE void surfaceBackward(const ScreenGradient<F>& s, const Projection<F>
 
 // To position (without the SH path), raw quaternion, scale and opacity.
 template <class F>
-BEAM_INLINE GaussianGradient<F> toGaussian(const CameraGradient<F>& g, const Projection<F>& p, F opacity_gradient,
-                                           const CameraConstants<F>& k) {
+BEAM_INLINE GaussianGradient<F> toGaussian(const CameraGradient<F>& g, const Projection<F>& p,
+                                           F opacity_gradient, const CameraConstants<F>& k) {
   GaussianGradient<F> out;
   out.position = mulTransposed(k.camera_from_world, g.t);
   out.scale = g.scale;
@@ -285,9 +293,12 @@ BEAM_INLINE GaussianGradient<F> toGaussian(const CameraGradient<F>& g, const Pro
   const F m01 = m.r[0].y, m02 = m.r[0].z, m10 = m.r[1].x, m12 = m.r[1].z, m20 = m.r[2].x, m21 = m.r[2].y;
   const F m00 = m.r[0].x, m11 = m.r[1].y, m22 = m.r[2].z;
   const F dw = two * fma(p.qx, m21 - m12, fma(p.qy, m02 - m20, p.qz * (m10 - m01)));
-  const F dx = two * (fma(p.qy, m01 + m10, fma(p.qz, m02 + m20, p.qw * (m21 - m12))) - two * p.qx * (m11 + m22));
-  const F dy = two * (fma(p.qx, m01 + m10, fma(p.qz, m12 + m21, p.qw * (m02 - m20))) - two * p.qy * (m00 + m22));
-  const F dz = two * (fma(p.qx, m02 + m20, fma(p.qy, m12 + m21, p.qw * (m10 - m01))) - two * p.qz * (m00 + m11));
+  const F dx =
+      two * (fma(p.qy, m01 + m10, fma(p.qz, m02 + m20, p.qw * (m21 - m12))) - two * p.qx * (m11 + m22));
+  const F dy =
+      two * (fma(p.qx, m01 + m10, fma(p.qz, m12 + m21, p.qw * (m02 - m20))) - two * p.qy * (m00 + m22));
+  const F dz =
+      two * (fma(p.qx, m02 + m20, fma(p.qy, m12 + m21, p.qw * (m10 - m01))) - two * p.qz * (m00 + m11));
   const F along = fma(p.qw, dw, fma(p.qx, dx, fma(p.qy, dy, p.qz * dz)));
   out.qw = (dw - p.qw * along) * p.inverse_norm;
   out.qx = (dx - p.qx * along) * p.inverse_norm;

@@ -58,14 +58,17 @@ BEAM_INLINE Vec3<F> shDirectionGradient(const Vec3<F>& d, int degree, const F* u
   g.y = g.y + k4 * (x * u[4] - z * u[5]) - two * k6 * y * u[6] - two * k8 * y * u[8];
   g.z = g.z - k4 * (y * u[5] + x * u[7]) + four * k6 * z * u[6];
   if (degree < 3) return g;
-  const F xx = x * x, yy = y * y, zz = z * z, k9(-0.59004359f), k10(2.89061144f), k11(-0.45704580f), k12(0.37317633f),
-          k14(1.44530572f);
-  g.x = g.x + k9 * six * x * y * u[9] + k10 * y * z * u[10] - k11 * two * x * y * u[11] - k12 * six * x * z * u[12] +
-        k11 * (four * zz - three * xx - yy) * u[13] + k14 * two * x * z * u[14] + k9 * three * (xx - yy) * u[15];
-  g.y = g.y + k9 * three * (xx - yy) * u[9] + k10 * x * z * u[10] + k11 * (four * zz - xx - three * yy) * u[11] -
-        k12 * six * y * z * u[12] - k11 * two * x * y * u[13] - k14 * two * y * z * u[14] - k9 * six * x * y * u[15];
-  g.z = g.z + k10 * x * y * u[10] + k11 * F(8.0f) * y * z * u[11] + k12 * (six * zz - three * xx - three * yy) * u[12] +
-        k11 * F(8.0f) * x * z * u[13] + k14 * (xx - yy) * u[14];
+  const F xx = x * x, yy = y * y, zz = z * z, k9(-0.59004359f), k10(2.89061144f), k11(-0.45704580f),
+          k12(0.37317633f), k14(1.44530572f);
+  g.x = g.x + k9 * six * x * y * u[9] + k10 * y * z * u[10] - k11 * two * x * y * u[11] -
+        k12 * six * x * z * u[12] + k11 * (four * zz - three * xx - yy) * u[13] + k14 * two * x * z * u[14] +
+        k9 * three * (xx - yy) * u[15];
+  g.y = g.y + k9 * three * (xx - yy) * u[9] + k10 * x * z * u[10] +
+        k11 * (four * zz - xx - three * yy) * u[11] - k12 * six * y * z * u[12] - k11 * two * x * y * u[13] -
+        k14 * two * y * z * u[14] - k9 * six * x * y * u[15];
+  g.z = g.z + k10 * x * y * u[10] + k11 * F(8.0f) * y * z * u[11] +
+        k12 * (six * zz - three * xx - three * yy) * u[12] + k11 * F(8.0f) * x * z * u[13] +
+        k14 * (xx - yy) * u[14];
   return g;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rasteriser against the slow right answer: pictures, every gradient, geometry laws, and the same bits for any
-// thread count and instruction set.
+// The rasteriser against the slow right answer: pictures, every gradient, geometry laws, and the same bits
+// for any thread count and instruction set.
 #include "core/render/rasterizer.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,11 @@ std::vector<double> inDouble(const GaussianBuffers& g) {
 }
 
 RasterDesc fullDesc(const Camera& c, int extra, bool gradients) {
-  return {.width = c.width, .height = c.height, .geometry = true, .extra_channels = extra, .gradients = gradients};
+  return {.width = c.width,
+          .height = c.height,
+          .geometry = true,
+          .extra_channels = extra,
+          .gradients = gradients};
 }
 
 struct Weights {  // dL/d(picture), fixed random numbers
@@ -74,9 +78,12 @@ struct Weights {  // dL/d(picture), fixed random numbers
     double loss = 0;
     for (std::size_t p = 0; p < picture.size(); ++p) {
       const ReferencePixel& r = picture[p];
-      for (int c = 0; c < 3; ++c) loss += up.color.plane(c)[p] * r.color[c] + up.normal.plane(c)[p] * r.normal[c];
-      loss += up.alpha.values[p] * r.alpha + up.depth.values[p] * r.depth + up.median_depth.values[p] * r.median;
-      for (std::size_t e = 0; e < r.extra.size(); ++e) loss += up.extra.plane(static_cast<int>(e))[p] * r.extra[e];
+      for (int c = 0; c < 3; ++c)
+        loss += up.color.plane(c)[p] * r.color[c] + up.normal.plane(c)[p] * r.normal[c];
+      loss +=
+          up.alpha.values[p] * r.alpha + up.depth.values[p] * r.depth + up.median_depth.values[p] * r.median;
+      for (std::size_t e = 0; e < r.extra.size(); ++e)
+        loss += up.extra.plane(static_cast<int>(e))[p] * r.extra[e];
     }
     return loss;
   }
@@ -109,13 +116,13 @@ TEST(Rasterizer, DrawsWhatTheReferenceDraws) {
   EXPECT_LE(flips, static_cast<int>(expected.size() / 200));
 }
 
-// Central differences of the reference in double. The 1/255 step is far from every pixel here, since the Gaussians are
-// larger than the picture; where a difference straddles a step of order or of the median, both sides disagree and the
-// entry does not count.
+// Central differences of the reference in double. The 1/255 step is far from every pixel here, since the
+// Gaussians are larger than the picture; where a difference straddles a step of order or of the median, both
+// sides disagree and the entry does not count.
 TEST(Rasterizer, EveryGradientMatchesCentralDifferencesOfTheReference) {
   const Camera c = offCentreCamera(6, 5);
   GaussianBuffers g = randomGaussians(5, 0.12f, 0.8f, 2, 11);
-  g.plane(L::kOpacity)[2] = 0.9999f;                       // clamped at 0.99 near its centre
+  g.plane(L::kOpacity)[2] = 0.9999f;  // clamped at 0.99 near its centre
   for (int ch = 0; ch < 3; ++ch) g.plane(L::kSh + ch)[3] = ch == 1 ? -9.0f : 0.3f;  // one clamped colour
   const vec3 background(0.3f, 0.6f, 0.1f);
   const auto raster = makeCpuDevice()->newRasterizer(fullDesc(c, 2, true));
@@ -135,14 +142,16 @@ TEST(Rasterizer, EveryGradientMatchesCentralDifferencesOfTheReference) {
       moved[v] += h;
       return weights.lossOf(reference.draw(moved));
     };
-    const double h = 1e-5, fine = (lossAt(h) - lossAt(-h)) / (2 * h), coarse = (lossAt(2 * h) - lossAt(-2 * h)) / (4 * h);
+    const double h = 1e-5, fine = (lossAt(h) - lossAt(-h)) / (2 * h),
+                 coarse = (lossAt(2 * h) - lossAt(-2 * h)) / (4 * h);
     if (std::abs(fine - coarse) > 1e-3 * (std::abs(fine) + 0.1)) continue;
     const int plane = static_cast<int>(v / g.count);
     const double got = gradients.plane(plane)[v % g.count];
     ++checked;
     if (std::abs(got - fine) > 2e-3 * (std::abs(fine) + 0.05)) {
       ++wrong;
-      ADD_FAILURE() << "plane " << plane << " Gaussian " << v % g.count << ": " << got << ", expected " << fine;
+      ADD_FAILURE() << "plane " << plane << " Gaussian " << v % g.count << ": " << got << ", expected "
+                    << fine;
     }
     if (wrong > 10) break;
   }
@@ -158,7 +167,8 @@ std::vector<float> everything(SimdTarget target) {
   GaussianBuffers gradients;
   raster->backward(Weights(c, 3).up, gradients);
   std::vector<float> all;
-  for (const Planes* p : {&images.color, &images.alpha, &images.depth, &images.median_depth, &images.normal, &images.extra}) {
+  for (const Planes* p :
+       {&images.color, &images.alpha, &images.depth, &images.median_depth, &images.normal, &images.extra}) {
     all.insert(all.end(), p->values.begin(), p->values.end());
   }
   all.insert(all.end(), gradients.values.begin(), gradients.values.end());
@@ -244,16 +254,19 @@ TEST(RasterizerGeometry, AFlatGaussianSeenObliquelyErrsByItsThicknessRatio) {
   const dvec3 normal(std::sin(incidence), 0, -std::cos(incidence));
   for (const auto& [ratio, expected] : {std::pair{0.3, 8.86}, std::pair{0.1, 0.99}}) {
     const auto thin = static_cast<float>(0.1 * ratio);
-    EXPECT_NEAR(normalAngleDeg(drawFrontal(flatGaussian({0, 0, 2}, normal, 0.1f, thin)), normal), expected, 0.05);
+    EXPECT_NEAR(normalAngleDeg(drawFrontal(flatGaussian({0, 0, 2}, normal, 0.1f, thin)), normal), expected,
+                0.05);
   }
 }
 
 TEST(RasterizerGeometry, ARoundGaussianFacesTheViewer) {
-  EXPECT_NEAR(normalAngleDeg(drawFrontal(flatGaussian({0, 0, 2}, {0, 0, -1}, 0.1f, 0.1f)), {0, 0, -1}), 0, 0.05);
+  EXPECT_NEAR(normalAngleDeg(drawFrontal(flatGaussian({0, 0, 2}, {0, 0, -1}, 0.1f, 0.1f)), {0, 0, -1}), 0,
+              0.05);
 }
 
 TEST(RasterizerGeometry, DepthAtTheCentreIsTheCentresDepth) {
-  const RasterImages images = drawFrontal(flatGaussian({0, 0, 2}, glm::normalize(dvec3(0.5, 0.2, -1)), 0.1f, 0.01f));
+  const RasterImages images =
+      drawFrontal(flatGaussian({0, 0, 2}, glm::normalize(dvec3(0.5, 0.2, -1)), 0.1f, 0.01f));
   EXPECT_NEAR(images.depth.values[32 * 65 + 32], 2, 1e-5);
   EXPECT_NEAR(images.median_depth.values[32 * 65 + 32], 2, 1e-5);
 }
@@ -263,7 +276,8 @@ TEST(RasterizerGeometry, DepthOfATiltedPlateIsThePlanesDepth) {
   const RasterImages images = drawFrontal(flatGaussian({0, 0, 2}, normal, 0.15f, 1e-4f));
   for (const auto& [x, y] : {std::pair{29, 33}, std::pair{36, 30}, std::pair{32, 36}}) {
     const dvec3 ray((x + 0.5 - 32.5) / 100, (y + 0.5 - 32.5) / 100, 1);
-    EXPECT_NEAR(images.depth.values[y * 65 + x], glm::dot(normal, dvec3(0, 0, 2)) / glm::dot(normal, ray), 1e-3);
+    EXPECT_NEAR(images.depth.values[y * 65 + x], glm::dot(normal, dvec3(0, 0, 2)) / glm::dot(normal, ray),
+                1e-3);
   }
 }
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of `beam`. Each add function declares one subcommand and its flags; its callback sets
+// CommandContext::action, which main runs after everything was parsed.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+
+#include "app/cli/console.h"
+#include "app/services.h"
+
+namespace CLI {
+class App;
+}
+
+namespace beam {
+
+struct CommandContext {
+  const Services& services;
+  Console& console;
+  std::stop_token stop;  // requested on SIGINT and SIGTERM; give it to Progress
+  std::function<int()>
+      action;  // of the command that was typed; returns the exit code, may throw Error, Cancelled
+};
+
+// --threads N, --simd auto|avx512|avx2|scalar, --device cpu: for every command that computes.
+void addDeviceFlags(CLI::App& command, DeviceChoice& choice);
+
+void addCheckCommand(CLI::App& app, CommandContext& context);
+void addEvaluateCommand(CLI::App& app, CommandContext& context);
+void addExportCommand(CLI::App& app, CommandContext& context);
+void addNewCommand(CLI::App& app, CommandContext& context);
+void addProcessCommand(CLI::App& app, CommandContext& context);
+void addRenderCommand(CLI::App& app, CommandContext& context);
+void addRunCommand(CLI::App& app, CommandContext& context);
+void addSampleCommand(CLI::App& app, CommandContext& context);
+void addStagesCommand(CLI::App& app, CommandContext& context);
+void addStatusCommand(CLI::App& app, CommandContext& context);
+
+}  // namespace beam

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// beam check and beam sample: look at inputs, make one.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/cli/commands.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/io/capture_check.h"
+#include "core/pipeline/project_document.h"
+#include "core/sample/make_sample.h"
+
+namespace beam {
+namespace {
+
+struct CheckFlags {
+  std::string path, up;
+  bool json = false;
+  std::vector<std::string> hold_out;
+};
+
+int runCheck(const CheckFlags& flags, Console& console) {
+  ImportOptions options;
+  options.hold_out = flags.hold_out;
+  if (!flags.up.empty()) options.up = parseUpAxis(flags.up);
+  const CheckReport report = checkPath(flags.path, options);
+  for (const std::string& w : report.warnings) console.warning(w);
+  console.print(flags.json ? toJson(report) : toText(report));
+  return 0;
+}
+
+struct SampleFlags {
+  std::string folder, size;
+  SampleOptions options;
+  DeviceChoice device;
+};
+
+void applySize(const std::string& size, SampleOptions& options) {
+  if (size.empty()) return;
+  const std::size_t x = size.find('x');
+  int width = 0, height = 0;
+  if (x != std::string::npos) {
+    width = std::atoi(size.substr(0, x).c_str());
+    height = std::atoi(size.substr(x + 1).c_str());
+  }
+  if (width < 16 || height < 16 || width > 8192 || height > 8192) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("--size expects WIDTHxHEIGHT of 16 to 8192 pixels, found \"{}\"", size));
+  }
+  options.width = width;
+  options.height = height;
+}
+
+}  // namespace
+
+void addCheckCommand(CLI::App& app, CommandContext& context) {
+  auto flags = std::make_shared<CheckFlags>();
+  CLI::App* command = app.add_subcommand(
+      "check", "Say what is understood of a capture, a panorama or a splat file, and what is wrong");
+  command->add_option("PATH", flags->path, "Capture folder, panorama (.exr, .hdr) or splats (.ply)")
+      ->required();
+  command->add_flag("--json", flags->json, "Print JSON");
+  command->add_option("--up", flags->up, "Up axis of the capture: +Y, +Z or -Y");
+  command->add_option("--hold-out", flags->hold_out, "Cameras kept for testing: names or every Nth")
+      ->delimiter(',');
+  command->callback([flags, &context] {
+    context.action = [flags, &context] { return runCheck(*flags, context.console); };
+  });
+}
+
+void addSampleCommand(CLI::App& app, CommandContext& context) {
+  auto flags = std::make_shared<SampleFlags>();
+  CLI::App* command = app.add_subcommand("sample", "Make a synthetic dome capture with full ground truth");
+  command->add_option("FOLDER", flags->folder, "Where it is written; must not exist or be empty")->required();
+  command->add_option("--frames", flags->options.frames, "Frames")->check(CLI::Range(1, 10000));
+  command->add_option("--cameras", flags->options.cameras, "Training cameras")->check(CLI::Range(2, 200));
+  command->add_option("--size", flags->size, "Picture size, WIDTHxHEIGHT");
+  command->add_option("--samples", flags->options.samples, "Light paths a pixel")->check(CLI::Range(1, 4096));
+  addDeviceFlags(*command, flags->device);
+  command->callback([flags, &context] {
+    context.action = [flags, &context] {
+      applySize(flags->size, flags->options);
+      setThreadCount(flags->device.threads);
+      Progress progress(context.stop, context.console.listener());
+      makeSample(flags->folder, flags->options, progress);
+      context.console.endProgress();
+      context.console.print(fmt::format("wrote the sample capture \"{}\"", flags->folder));
+      return 0;
+    };
+  });
+}
+
+}  // namespace beam

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// beam process, new, run, status, stages: everything about a project and its runs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "app/cli/commands.h"
+#include "app/cli/run_flags.h"
+#include "core/base/error.h"
+#include "core/pipeline/project_report.h"
+
+namespace beam {
+namespace fs = std::filesystem;
+namespace {
+
+Project newProject(const fs::path& folder, const fs::path& capture, const Services& services) {
+  std::error_code failed;
+  if (!fs::is_directory(capture, failed)) {
+    throw Error(Error::Kind::Data, fmt::format("the capture \"{}\" is no folder", capture.string()));
+  }
+  Project project = Project::create(folder, {}, services.pipeline);
+  project.setCapture(capture);
+  return project;
+}
+
+// The project at `folder`, made for `capture` when there is none yet.
+Project projectFor(const fs::path& folder, const fs::path& capture, const Services& services) {
+  if (!Project::isProject(folder)) return newProject(folder, capture, services);
+  Project project = Project::open(folder, services.pipeline);
+  if (!project.isCapture(capture)) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" is a project of another capture, \"{}\"; choose another folder for --out",
+                            folder.string(), project.document().capture.absolute));
+  }
+  project.setCapture(capture);
+  return project;
+}
+
+struct ProcessArguments {
+  std::string capture, project;
+  ProjectFlags project_flags;
+  RunFlags run;
+};
+
+}  // namespace
+
+void addProcessCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("process", "Import a capture and run what is missing; resumes");
+  auto a = std::make_shared<ProcessArguments>();
+  command->add_option("CAPTURE", a->capture, "Folder of the capture; it is only read")->required();
+  command->add_option("--out", a->project, "Project folder, Name.beam")->required()->type_name("P.beam");
+  addProjectFlags(*command, a->project_flags);
+  addRunFlags(*command, a->run);
+  command->callback([a, &context] {
+    context.action = [a, &context] {
+      Project project = projectFor(a->project, a->capture, context.services);
+      applyFlags(project, a->project_flags);
+      project.capture();  // a capture that cannot be read leaves no project behind
+      project.save();
+      return runProject(std::move(project), a->run, context);
+    };
+  });
+}
+
+void addNewCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("new", "Make a project of a capture without running anything");
+  auto a = std::make_shared<ProcessArguments>();
+  command->add_option("PROJECT", a->project, "Project folder, Name.beam")->required();
+  command->add_option("--capture", a->capture, "Folder of the capture; it is only read")->required();
+  addProjectFlags(*command, a->project_flags);
+  command->callback([a, &context] {
+    context.action = [a, &context] {
+      Project project = newProject(a->project, a->capture, context.services);
+      applyFlags(project, a->project_flags);
+      const CaptureSet& capture = project.capture();
+      project.save();
+      context.console.print(fmt::format("made {} ({} cameras, {} frames)", a->project, capture.views.size(),
+                                        capture.frames.size()));
+      return 0;
+    };
+  });
+}
+
+void addRunCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("run", "Run what is missing of a project");
+  auto a = std::make_shared<ProcessArguments>();
+  command->add_option("PROJECT", a->project, "Project folder")->required();
+  addProjectFlags(*command, a->project_flags);
+  addRunFlags(*command, a->run);
+  command->callback([a, &context] {
+    context.action = [a, &context] {
+      Project project = Project::open(a->project, context.services.pipeline);
+      applyFlags(project, a->project_flags);
+      project.save();
+      return runProject(std::move(project), a->run, context);
+    };
+  });
+}
+
+void addStatusCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("status", "What of a project is done");
+  auto folder = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("PROJECT", *folder, "Project folder")->required();
+  command->add_flag("--json", *json, "As JSON");
+  command->callback([folder, json, &context] {
+    context.action = [folder, json, &context] {
+      const Project project = Project::open(*folder, context.services.pipeline);
+      context.console.print(*json ? statusJson(project) : statusText(project));
+      return 0;
+    };
+  });
+}
+
+void addStagesCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("stages", "The stages, their steps and every setting");
+  auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "As JSON");
+  command->callback([json, &context] {
+    context.action = [json, &context] {
+      const StageRegistry& stages = context.services.pipeline->stages;
+      context.console.print(*json ? stagesJson(stages) : stagesText(stages));
+      return 0;
+    };
+  });
+}
+
+}  // namespace beam

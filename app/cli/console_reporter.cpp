@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/console_reporter.h"
+
+#include <fmt/format.h>
+
+namespace beam {
+namespace {
+
+constexpr int kSomeFailed = 10, kInterrupted = 75;
+
+std::string nameOf(const StepRef& ref) {
+  return ref.frame ? fmt::format("frame {} {}", ref.frame_name, ref.step) : ref.step;
+}
+
+std::string namesOf(const std::vector<StepFailed>& failed) {
+  std::string names;
+  for (const StepFailed& f : failed) names.append(names.empty() ? "" : ", ").append(f.ref.frame_name);
+  return names;
+}
+
+}  // namespace
+
+void ConsoleReporter::report(const JobEvent& event) {
+  std::visit([this](const auto& e) { show(e); }, event);
+}
+
+void ConsoleReporter::show(const StageStarted&) {}
+
+void ConsoleReporter::show(const StepProgress& e) {
+  std::string label = nameOf(e.ref);
+  if (!e.report.label.empty()) label += ": " + e.report.label;
+  if (e.report.total > 0) label += fmt::format(" {}/{}", e.report.done, e.report.total);
+  console_.progress({e.job_fraction, label, e.rate, e.seconds_left});
+}
+
+void ConsoleReporter::show(const StepFinished& e) {
+  console_.info(e.reused ? fmt::format("{}: reused", nameOf(e.ref))
+                         : fmt::format("{}: done in {:.1f} s", nameOf(e.ref), e.seconds));
+}
+
+void ConsoleReporter::show(const StepFailed& e) {
+  console_.error(fmt::format("{}: {}", nameOf(e.ref), e.message));
+}
+
+void ConsoleReporter::show(const JobFinished& e) {
+  console_.endProgress();
+  for (const std::string& note : e.notes) console_.print(note);
+  switch (e.outcome) {
+    case JobOutcome::Done:
+      console_.info(
+          e.computed == 0
+              ? fmt::format("nothing to compute: all {} results are there already (reused)", e.reused)
+              : fmt::format("done in {}: {} steps computed, {} reused", durationText(e.seconds), e.computed,
+                            e.reused));
+      break;
+    case JobOutcome::DoneWithFailures:
+      console_.error(fmt::format("{} of the frames failed ({}); the others are done", e.failed.size(),
+                                 namesOf(e.failed)));
+      break;
+    case JobOutcome::Cancelled:
+      console_.info("interrupted; the same command goes on after the last finished step");
+      break;
+    case JobOutcome::Failed:
+      console_.error(e.message);
+      break;
+  }
+}
+
+int exitCode(const JobFinished& finished) {
+  switch (finished.outcome) {
+    case JobOutcome::Done:
+      return 0;
+    case JobOutcome::DoneWithFailures:
+      return kSomeFailed;
+    case JobOutcome::Cancelled:
+      return kInterrupted;
+    case JobOutcome::Failed:
+      return exitCode(finished.kind);
+  }
+  return exitCode(Error::Kind::Bug);
+}
+
+}  // namespace beam

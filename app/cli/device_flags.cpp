@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
+#include "app/cli/commands.h"
+
+namespace beam {
+
+void addDeviceFlags(CLI::App& command, DeviceChoice& choice) {
+  command.add_option("--threads", choice.threads, "Threads to compute with; 0: all of the machine")
+      ->check(CLI::Range(0, 4096));
+  command.add_option("--simd", choice.simd, "Instruction set; results do not depend on it")
+      ->check(CLI::IsMember({"auto", "avx512", "avx2", "scalar"}));
+  command.add_option("--device", choice.device, "Compute device")->check(CLI::IsMember({"cpu"}));
+}
+
+}  // namespace beam

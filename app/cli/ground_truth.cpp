@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/ground_truth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/io/image_file.h"
+#include "core/io/mesh_ply.h"
+#include "core/math/color.h"
+#include "core/method/evaluate.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> findPicture(const fs::path& folder, const std::string& camera,
+                                    const std::string& frame) {
+  for (const char* e : {".exr", ".png"}) {
+    const fs::path p = folder / camera / (frame + e);
+    if (fs::exists(p)) return p;
+  }
+  return std::nullopt;
+}
+
+bool isExr(const fs::path& p) { return p.extension() == ".exr"; }
+
+Planes fromPhoto(const fs::path& p, bool decode) {
+  const Image<u8vec3> im = readPhoto(p);
+  Planes out(im.width, im.height, 3);
+  for (std::size_t i = 0; i < im.pixels.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const float v = im.pixels[i][c] / 255.0f;
+      out.plane(c)[i] = decode ? linearFromSrgb(v) : v;
+    }
+  }
+  return out;
+}
+
+// Channels by what is stored: R G B, else the one there is.
+Planes fromExr(const fs::path& p) {
+  const std::vector<std::string> names = exrChannels(p);
+  const bool rgb = std::find(names.begin(), names.end(), "R") != names.end();
+  return rgb ? readExr(p, {"R", "G", "B"}) : readExr(p, {names.at(0)});
+}
+
+Planes asLinear(const fs::path& p) { return isExr(p) ? fromExr(p) : fromPhoto(p, true); }
+
+Planes asValue(const fs::path& p) {
+  const Planes in = isExr(p) ? fromExr(p) : fromPhoto(p, false);
+  Planes out(in.width, in.height, 1);
+  for (std::size_t i = 0; i < in.planeSize(); ++i) {
+    for (int c = 0; c < in.channels; ++c) out.values[i] += in.plane(c)[i] / static_cast<float>(in.channels);
+  }
+  return out;
+}
+
+Planes asNormal(const fs::path& p) {
+  if (isExr(p)) return fromExr(p);
+  Planes out = fromPhoto(p, false);
+  for (float& v : out.values) v = 2 * v - 1;
+  return out;
+}
+
+Planes encoded(Planes p, const dvec3& scale = dvec3(1)) {
+  for (int c = 0; c < p.channels; ++c) {
+    for (std::size_t i = 0; i < p.planeSize(); ++i) {
+      float& v = p.plane(c)[i];
+      v = srgbFromLinear(std::clamp(static_cast<float>(v * scale[c]), 0.0f, 1.0f));
+    }
+  }
+  return p;
+}
+
+Planes clipped(Planes p) {
+  for (float& v : p.values) v = std::clamp(v, 0.0f, 1.0f);
+  return p;
+}
+
+struct Triple {
+  Planes prediction, truth;
+  Image<std::uint8_t> mask;
+};
+
+std::vector<Triple> load(const GroundTruth& t, const fs::path& pictures, const std::string& what,
+                         Planes (*reader)(const fs::path&)) {
+  std::vector<Triple> out;
+  for (const std::string& camera : t.test_cameras) {
+    for (const std::string& frame : what == "rgb" ? t.frames : t.gt_frames) {
+      const auto p = findPicture(pictures / what, camera, frame),
+                 g = findPicture(t.folder / "gt" / what, camera, frame);
+      if (!p || !g) continue;
+      Triple triple{reader(*p), reader(*g), readMask(t.folder / "gt/mask" / camera / (frame + ".png"))};
+      if (triple.prediction.width != triple.truth.width || triple.prediction.height != triple.truth.height) {
+        throw Error(Error::Kind::Data,
+                    fmt::format("\"{}\": expected {} x {} pixels as the ground truth has, found {} x {}",
+                                p->string(), triple.truth.width, triple.truth.height, triple.prediction.width,
+                                triple.prediction.height));
+      }
+      out.push_back(std::move(triple));
+    }
+  }
+  return out;
+}
+
+template <class Prepare>
+Scores meanScores(const std::vector<Triple>& triples, Prepare&& prepare) {
+  Scores s;
+  const auto n = static_cast<double>(triples.size());
+  for (const Triple& t : triples) {
+    const PictureScore p = scorePicture(prepare(t.prediction, true), prepare(t.truth, false), t.mask);
+    s["psnr"] += p.psnr / n;
+    s["ssim"] += p.ssim / n;
+    s["psnr_mask"] += p.psnr_mask / n;
+  }
+  s["pictures"] = n;
+  return s;
+}
+
+// One factor a channel, least squares over all mask pixels of all pictures, linear.
+dvec3 channelScale(const std::vector<Triple>& triples) {
+  dvec3 product(0), square(0);
+  for (const Triple& t : triples) {
+    for (int c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < t.truth.planeSize(); ++i) {
+        if (t.mask.pixels[i] <= 127) continue;
+        const double p = t.prediction.plane(c)[i];
+        product[c] += p * t.truth.plane(c)[i];
+        square[c] += p * p;
+      }
+    }
+  }
+  return product / glm::max(square, dvec3(1e-12));
+}
+
+void scoreColors(const GroundTruth& t, const fs::path& pictures, const std::string& what, ScoreTable& out) {
+  const std::vector<Triple> triples = load(t, pictures, what, asLinear);
+  if (triples.empty()) return;
+  out.emplace_back(what, meanScores(triples, [](const Planes& p, bool) { return encoded(p); }));
+  if (what == "rgb") return;
+  const dvec3 scale = channelScale(triples);
+  out.emplace_back(what + "_scaled", meanScores(triples, [&](const Planes& p, bool prediction) {
+                     return encoded(p, prediction ? scale : dvec3(1));
+                   }));
+}
+
+void scoreMeshes(const GroundTruth& t, const fs::path& pictures, ScoreTable& out) {
+  Scores sum;
+  double n = 0;
+  for (const std::string& frame : t.gt_frames) {
+    const fs::path p = pictures / "mesh" / (frame + ".ply"), g = t.folder / "gt/mesh" / (frame + ".ply");
+    if (!fs::exists(p) || !fs::exists(g)) continue;
+    const Chamfer c = chamferDistance(readMeshPly(p), readMeshPly(g));
+    sum["chamfer_mm"] += c.chamfer_mm;
+    sum["pred_to_gt_mm"] += c.prediction_to_truth_mm;
+    sum["gt_to_pred_mm"] += c.truth_to_prediction_mm;
+    ++n;
+  }
+  if (n == 0) return;
+  for (auto& [key, value] : sum) value /= n;
+  sum["pictures"] = n;
+  out.emplace_back("mesh", sum);
+}
+
+// Mean over the environments, as the evaluator's relight_mean.
+void addRelightMean(ScoreTable& table, bool scaled) {
+  Scores mean;
+  double rows = 0;
+  for (const auto& [name, s] : table) {
+    if (name.rfind("relight_", 0) != 0 || name.ends_with("_scaled") != scaled) continue;
+    for (const char* k : {"psnr", "ssim", "psnr_mask", "pictures"}) mean[k] += s.at(k);
+    ++rows;
+  }
+  if (rows < 2) return;
+  for (const char* k : {"psnr", "ssim", "psnr_mask"}) mean[k] /= rows;
+  table.emplace_back(scaled ? "relight_mean_scaled" : "relight_mean", mean);
+}
+
+std::vector<std::string> strings(const nlohmann::json& j, const char* key) {
+  return j.contains(key) ? j[key].get<std::vector<std::string>>() : std::vector<std::string>{};
+}
+
+}  // namespace
+
+GroundTruth openGroundTruth(const fs::path& folder) {
+  const fs::path file = folder / "dataset.json";
+  if (!fs::is_directory(folder / "gt") || !fs::exists(file)) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\": expected a data set with dataset.json and gt/", folder.string()));
+  }
+  try {
+    const nlohmann::json j = nlohmann::json::parse(readTextFile(file));
+    GroundTruth t{folder, strings(j, "test_cameras"), strings(j, "frame_names"), strings(j, "gt_frames"),
+                  strings(j, "relight_environments")};
+    return t;
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" cannot be understood: {}", file.string(), e.what()));
+  }
+}
+
+ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progress& progress) {
+  ScoreTable out;
+  progress.expect(static_cast<std::int64_t>(7 + t.environments.size()));
+  for (const char* what : {"rgb", "base_color"}) scoreColors(t, pictures, what, out), progress.step();
+  for (const char* what : {"ao", "roughness"}) {
+    const std::vector<Triple> triples = load(t, pictures, what, asValue);
+    if (!triples.empty())
+      out.emplace_back(what, meanScores(triples, [](const Planes& p, bool) { return clipped(p); }));
+    progress.step();
+  }
+  if (const std::vector<Triple> triples = load(t, pictures, "normal", asNormal); !triples.empty()) {
+    Scores s{{"angle_deg", 0}, {"pictures", static_cast<double>(triples.size())}};
+    for (const Triple& n : triples)
+      s["angle_deg"] += normalErrorDeg(n.prediction, n.truth, n.mask) / s["pictures"];
+    out.emplace_back("normal", s);
+  }
+  progress.step();
+  if (const std::vector<Triple> triples = load(t, pictures, "depth", asValue); !triples.empty()) {
+    Scores s{{"mae_mm", 0}, {"pictures", static_cast<double>(triples.size())}};
+    for (const Triple& d : triples)
+      s["mae_mm"] += depthErrorMm(d.prediction, d.truth, d.mask) / s["pictures"];
+    out.emplace_back("depth", s);
+  }
+  progress.step();
+  for (const std::string& e : t.environments) scoreColors(t, pictures, "relight_" + e, out), progress.step();
+  scoreMeshes(t, pictures, out);
+  progress.step();
+  addRelightMean(out, false);
+  addRelightMean(out, true);
+  if (out.empty()) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\": nothing to score against \"{}\"; expected folders such as "
+                            "rgb/<test camera>/<frame>.png",
+                            pictures.string(), t.folder.string()));
+  }
+  return out;
+}
+
+std::string scoreText(const ScoreTable& table) {
+  static const std::vector<std::pair<const char*, const char*>> kColumns = {
+      {"psnr", "{:.3f}"},          {"ssim", "{:.4f}"},          {"psnr_mask", "{:.3f}"},
+      {"angle_deg", "{:.3f}"},     {"mae_mm", "{:.3f}"},        {"chamfer_mm", "{:.3f}"},
+      {"pred_to_gt_mm", "{:.3f}"}, {"gt_to_pred_mm", "{:.3f}"}, {"pictures", "{:.0f}"}};
+  std::vector<std::pair<const char*, const char*>> columns;
+  for (const auto& c : kColumns) {
+    if (std::any_of(table.begin(), table.end(),
+                    [&](const auto& row) { return row.second.contains(c.first); }))
+      columns.push_back(c);
+  }
+  std::string text = fmt::format("{:<28}", "map");
+  for (const auto& c : columns) text += fmt::format("{:>15}", c.first);
+  for (const auto& [name, scores] : table) {
+    text += fmt::format("\n{:<28}", name);
+    for (const auto& [key, format] : columns) {
+      const auto found = scores.find(key);
+      text += fmt::format("{:>15}",
+                          found == scores.end() ? "-" : fmt::format(fmt::runtime(format), found->second));
+    }
+  }
+  return text;
+}
+
+std::string scoreJson(const ScoreTable& table) {
+  nlohmann::ordered_json j = nlohmann::ordered_json::object();
+  for (const auto& [name, scores] : table) {
+    for (const auto& [key, value] : scores) j[name][key] = value;
+  }
+  return j.dump(1);
+}
+
+}  // namespace beam

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores of picture folders against a data set's ground truth, by the rules of the data sets' own evaluator.
+// The only code of the house that reads gt/.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+
+namespace beam {
+
+using Scores = std::map<std::string, double>;  // "psnr", "ssim", "psnr_mask", "angle_deg", "mae_mm", ...
+using ScoreTable = std::vector<std::pair<std::string, Scores>>;  // by map, in the evaluator's order
+
+struct GroundTruth {
+  std::filesystem::path folder;  // the data set's; gt/ lies inside
+  std::vector<std::string> test_cameras, frames, gt_frames, environments;
+};
+// Throws Error{Data} when the folder has no dataset.json or no gt/.
+GroundTruth openGroundTruth(const std::filesystem::path& folder);
+
+// Scores what is in `pictures` (missing pictures are left out); throws Error{Data} when nothing can be
+// scored.
+ScoreTable scorePictures(const GroundTruth& truth, const std::filesystem::path& pictures, Progress& progress);
+
+std::string scoreText(const ScoreTable& table);
+std::string scoreJson(const ScoreTable& table);
+
+}  // namespace beam

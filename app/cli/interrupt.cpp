@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/interrupt.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <ctime>
+
+namespace beam {
+namespace {
+
+constexpr int kInterrupted = 75;
+
+sigset_t handledSignals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
+}  // namespace
+
+Interrupt::Interrupt() {
+  const sigset_t set = handledSignals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  thread_ = std::jthread([this, set](std::stop_token ended) {
+    const timespec patience{0, 50'000'000};
+    while (!ended.stop_requested()) {
+      if (sigtimedwait(&set, nullptr, &patience) < 0) continue;
+      // The second time the user does not want to wait; what is published is safe.
+      if (!source_.request_stop()) ::_exit(kInterrupted);
+    }
+  });
+}
+
+Interrupt::~Interrupt() = default;
+
+}  // namespace beam

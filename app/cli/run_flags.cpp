@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/run_flags.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "app/cli/console_reporter.h"
+#include "core/base/error.h"
+#include "core/base/fields_json.h"
+#include "core/pipeline/frame_list.h"
+
+namespace beam {
+namespace {
+
+std::vector<std::string> splitAtCommas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    if (!part.empty()) parts.push_back(part);
+  }
+  return parts;
+}
+
+void setFromText(Project& project, const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw Error(Error::Kind::Usage, fmt::format("--set expects key=value, found \"{}\"", assignment));
+  }
+  project.set(assignment.substr(0, equals), parseFieldValue(assignment.substr(equals + 1)));
+}
+
+}  // namespace
+
+void addProjectFlags(CLI::App& command, ProjectFlags& flags) {
+  command.add_option("--preset", flags.preset, "draft, standard (when nothing is said) or paper");
+  command.add_option("--set", flags.set, "A setting, e.g. --set surface.iterations=2000; see beam stages")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--environment", flags.environment,
+                  "Panorama of the light (.exr, .hdr), latitude-longitude")
+      ->type_name("FILE");
+  command
+      .add_option("--hold-out", flags.hold_out, "Cameras kept for testing: N (every Nth), NAME,NAME or none")
+      ->type_name("N|NAMES");
+  command.add_option("--up", flags.up, "Up axis of the capture: +Y, +Z or -Y")->type_name("AXIS");
+}
+
+void addRunFlags(CLI::App& command, RunFlags& flags) {
+  command.add_option("--stage", flags.stage, "Only this stage and what it needs");
+  command.add_option("--until", flags.until, "The last stage to run")->excludes("--stage");
+  command.add_option("--frames", flags.frames, "Frames: 0-7, 1,5, 1-9x2 or all")->type_name("LIST");
+  addDeviceFlags(command, flags.device);
+}
+
+void applyFlags(Project& project, const ProjectFlags& flags) {
+  if (!flags.preset.empty()) project.setPreset(flags.preset);
+  for (const std::string& assignment : flags.set) setFromText(project, assignment);
+  if (flags.environment) {
+    if (!std::filesystem::is_regular_file(*flags.environment)) {
+      throw Error(Error::Kind::Data, fmt::format("the panorama \"{}\" is not there", *flags.environment));
+    }
+    project.setEnvironment(*flags.environment);
+  }
+  if (flags.hold_out) {
+    project.setHoldOut(*flags.hold_out == "none" ? std::vector<std::string>{}
+                                                 : splitAtCommas(*flags.hold_out));
+  }
+  if (flags.up) project.setUp(parseUpAxis(*flags.up));
+}
+
+int runProject(Project project, const RunFlags& flags, CommandContext& context) {
+  RunRequest request;
+  request.frames = parseFrameList(flags.frames, project.capture().frames);
+  request.stage = flags.stage;
+  request.until = flags.until;
+  Runner runner;
+  runner.start(std::move(project), std::move(request), makeDevice(flags.device));
+  ConsoleReporter reporter(context.console);
+  for (;;) {
+    if (context.stop.stop_requested()) runner.requestStop();
+    const std::optional<JobEvent> event = runner.waitPop(std::chrono::milliseconds(50));
+    if (!event) continue;
+    reporter.report(*event);
+    if (const auto* finished = std::get_if<JobFinished>(&*event)) return exitCode(*finished);
+  }
+}
+
+}  // namespace beam

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/io/capture_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/io/image_file.h"
+#include "core/io/splat_ply.h"
+#include "core/scene/environment.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* nameOf(UpAxis up) {
+  switch (up) {
+    case UpAxis::PlusY:
+      return "+Y";
+    case UpAxis::PlusZ:
+      return "+Z";
+    case UpAxis::MinusY:
+      return "-Y";
+  }
+  return "";
+}
+
+PanoramaCheck checkPanorama(const fs::path& path) {
+  const Environment e = makeEnvironment(readRadiance(path));
+  return {e.radiance.width, e.radiance.height, meanRadiance(e), brightestDirection(e)};
+}
+
+double coverageOf(const Image<std::uint8_t>& mask) {
+  if (mask.empty()) return -1;
+  double sum = 0;
+  for (const std::uint8_t m : mask.pixels) sum += m / 255.0;
+  return sum / static_cast<double>(mask.pixels.size());
+}
+
+CameraCheck checkCamera(const CaptureSet& set, std::size_t view, std::vector<std::string>& warnings) {
+  const View& v = set.views[view];
+  CameraCheck c{v.name, v.split == Split::Test, v.camera.width, v.camera.height, v.camera.intrinsics};
+  const ViewIndex index{static_cast<std::int32_t>(view)};
+  for (std::size_t f = 0; f < set.frames.size(); ++f) {
+    const FrameIndex frame{static_cast<std::int32_t>(f)};
+    if (!set.source->has(index, frame)) continue;
+    try {
+      set.source->photo(index, frame);
+      const double coverage = coverageOf(set.source->mask(index, frame));
+      if (c.frames++ == 0) c.mask_coverage = coverage;
+      if (coverage == 0) {
+        warnings.push_back(fmt::format("camera {}, frame {}: the mask is empty", v.name, set.frames[f]));
+      }
+    } catch (const Error& e) {
+      warnings.push_back(
+          fmt::format("{}; camera {}, frame {} cannot be used", e.what(), v.name, set.frames[f]));
+    }
+  }
+  return c;
+}
+
+CheckReport checkCapture(const fs::path& path, const ImportOptions& options) {
+  const ImportedCapture capture = openCapture(path, options);
+  const CaptureSet& set = capture.set;
+  CheckReport r;
+  r.kind = "capture";
+  r.layout = capture.layout;
+  r.up = nameOf(set.up);
+  r.frames = set.frames;
+  r.warnings = capture.warnings;
+  r.seed_points = set.seed_points.position_m.size();
+  r.cameras.resize(set.views.size());
+  std::vector<std::vector<std::string>> warnings(set.views.size());
+  parallelFor(set.views.size(), 1,
+              [&](std::size_t v, std::size_t) { r.cameras[v] = checkCamera(set, v, warnings[v]); });
+  for (const auto& w : warnings) r.warnings.insert(r.warnings.end(), w.begin(), w.end());
+  if (!set.has_masks) r.warnings.push_back("no masks: there will be no visual hull and no mask loss");
+  if (!set.environment_file) {
+    r.warnings.push_back("no panorama (environment.exr or .hdr): the run stops after Surface");
+  } else {
+    try {
+      r.panorama = checkPanorama(*set.environment_file);
+    } catch (const Error& e) {
+      r.warnings.emplace_back(e.what());
+    }
+  }
+  return r;
+}
+
+SplatCheck checkSplats(const fs::path& path) {
+  const SplatFile f = readSplatPly(path);
+  SplatCheck s{f.cloud.size(), f.sh_degree, f.materials.has_value()};
+  if (s.count == 0) return s;
+  s.low = s.high = f.cloud.position_m[0];
+  for (const vec3& p : f.cloud.position_m) s.low = glm::min(s.low, p), s.high = glm::max(s.high, p);
+  return s;
+}
+
+std::string textOf(vec3 v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z); }
+nlohmann::ordered_json jsonOf(vec3 v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+CheckReport checkPath(const fs::path& path, const ImportOptions& options) {
+  CheckReport r;
+  if (fs::is_directory(path) || !fs::exists(path)) {
+    r = checkCapture(path, options);
+  } else if (path.extension() == ".ply") {
+    r.kind = "splats";
+    r.splats = checkSplats(path);
+  } else {
+    r.kind = "panorama";
+    r.panorama = checkPanorama(path);
+  }
+  r.path = path.string();
+  return r;
+}
+
+std::string toText(const CheckReport& r) {
+  std::string t = fmt::format("{}: {}\n", r.kind, r.path);
+  if (r.kind == "capture") {
+    t += fmt::format("layout: {}\nup axis: {}\nframes: {} ({} to {})\nseed points: {}\ncameras: {}\n",
+                     r.layout, r.up, r.frames.size(), r.frames.empty() ? "-" : r.frames.front(),
+                     r.frames.empty() ? "-" : r.frames.back(), r.seed_points, r.cameras.size());
+    for (const CameraCheck& c : r.cameras) {
+      t += fmt::format("  {:<10} {} x {}  fx {:.1f} fy {:.1f} cx {:.1f} cy {:.1f}  frames {}  mask {}{}\n",
+                       c.name, c.width, c.height, c.intrinsics.fx, c.intrinsics.fy, c.intrinsics.cx,
+                       c.intrinsics.cy, c.frames,
+                       c.mask_coverage < 0 ? "-" : fmt::format("{:.1f} %", 100 * c.mask_coverage),
+                       c.held_out ? "  held out" : "");
+    }
+  }
+  if (r.panorama) {
+    t += fmt::format("panorama: {} x {}, mean radiance {}, brightest towards {}\n", r.panorama->width,
+                     r.panorama->height, textOf(r.panorama->mean_radiance),
+                     textOf(r.panorama->brightest_direction));
+  }
+  if (r.splats) {
+    t += fmt::format("Gaussians: {}, SH degree {}, {}, from {} to {}\n", r.splats->count, r.splats->sh_degree,
+                     r.splats->has_materials ? "with materials" : "without materials", textOf(r.splats->low),
+                     textOf(r.splats->high));
+  }
+  t += fmt::format("warnings: {}", r.warnings.size());
+  return t;
+}
+
+std::string toJson(const CheckReport& r) {
+  nlohmann::ordered_json j;
+  j["path"] = r.path;
+  j["kind"] = r.kind;
+  if (r.kind == "capture") {
+    j["layout"] = r.layout;
+    j["up"] = r.up;
+    j["frames"] = r.frames;
+    j["seed_points"] = r.seed_points;
+    j["cameras"] = nlohmann::ordered_json::array();
+    for (const CameraCheck& c : r.cameras) {
+      nlohmann::ordered_json k = {{"name", c.name},        {"width", c.width},      {"height", c.height},
+                                  {"fx", c.intrinsics.fx}, {"fy", c.intrinsics.fy}, {"cx", c.intrinsics.cx},
+                                  {"cy", c.intrinsics.cy}, {"frames", c.frames},    {"held_out", c.held_out}};
+      if (c.mask_coverage >= 0) k["mask_coverage"] = c.mask_coverage;
+      j["cameras"].push_back(std::move(k));
+    }
+  }
+  if (r.panorama) {
+    j["panorama"] = {{"width", r.panorama->width},
+                     {"height", r.panorama->height},
+                     {"mean_radiance", jsonOf(r.panorama->mean_radiance)},
+                     {"brightest_direction", jsonOf(r.panorama->brightest_direction)}};
+  }
+  if (r.splats) {
+    j["splats"] = {{"count", r.splats->count},
+                   {"sh_degree", r.splats->sh_degree},
+                   {"has_materials", r.splats->has_materials},
+                   {"low", jsonOf(r.splats->low)},
+                   {"high", jsonOf(r.splats->high)}};
+  }
+  j["warnings"] = r.warnings;
+  return j.dump(2);
+}
+
+}  // namespace beam

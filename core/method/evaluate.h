@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores of rendered pictures against ground truth, or of held-out photographs; the rules are those of the
+// data sets' own evaluator: bounding box of the mask, sRGB-encoded colours, black background.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/image/image.h"
+#include "core/scene/mesh.h"
+
+namespace beam {
+
+struct PictureScore {
+  double psnr = 0, ssim = 0, psnr_mask = 0;
+};
+
+// Values in [0, 1] in the compared space; mask > 127 is inside.
+PictureScore scorePicture(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask);
+
+// Mean angle in degrees where mask > 127 and the truth has a normal; a missing prediction counts 90.
+double normalErrorDeg(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask);
+
+// Mean absolute error in millimetres where mask > 127 and the truth has a depth.
+double depthErrorMm(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask);
+
+struct Chamfer {
+  double chamfer_mm = 0, prediction_to_truth_mm = 0, truth_to_prediction_mm = 0;
+};
+// 100,000 area-uniform points each way, exact point-triangle distances; deterministic.
+Chamfer chamferDistance(const Mesh& prediction, const Mesh& truth);
+
+}  // namespace beam

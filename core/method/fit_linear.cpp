@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/fit_linear.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/log.h"
+#include "core/base/parallel.h"
+#include "core/math/color.h"
+#include "core/math/knn.h"
+#include "core/math/sh.h"
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kMaxEntries = 150'000'000;  // of 8 bytes: 1.2 GB of blend weights
+constexpr std::size_t kViewsTogether = 16;        // whose back-projections are held at a time
+constexpr float kSlopeFloor = 0.01f;              // linear; below it the eye's slope would drown the rest
+constexpr float kSeen = 0.05f;                    // sum of blend weights (pixels) that makes a Gaussian seen
+constexpr float kPrior = 1e-4f;                   // pull of the mean colour towards its first guess
+constexpr int kNeighbors = 4;                     // seen Gaussians that lend their colour to an unseen one
+constexpr double kConverged = 1e-10;              // of the squared residual
+constexpr std::size_t kGrain = 2048;              // Gaussians a piece
+
+// What one view asks for: sum of w_i value_i = target, pixel by pixel, with an importance for each channel.
+struct ViewEquations {
+  vec3 eye;
+  std::vector<std::uint32_t> first, gaussian;  // rows of kept pixels
+  std::vector<float> weight;
+  std::vector<vec4> target, importance;
+
+  std::size_t rows() const { return target.size(); }
+};
+
+// Importance of a pixel and its target, w last. Base colour errors count as they are seen: slope of sRGB
+// squared.
+std::pair<vec4, vec4> demand(const MaterialMaps& m, std::size_t i, float alpha) {
+  const float base = m.base_color_weight.values[i], occlusion = m.ao_weight.values[i];
+  vec4 target, importance;
+  for (int c = 0; c < 3; ++c) {
+    target[c] = m.base_color.plane(c)[i];
+    const float slope = srgbSlope(std::max(target[c], kSlopeFloor));
+    importance[c] = base * slope * slope;
+  }
+  target.w = m.ambient_occlusion.values[i];
+  importance.w = occlusion;
+  return {target * alpha, importance};
+}
+
+// Every `stride`-th pixel of a lattice without rows or columns of its own; all of them for stride 1.
+bool kept(int x, int y, int stride) { return (x + y * (stride * 5 / 8 | 1)) % stride == 0; }
+
+ViewEquations equationsOf(const MaterialMaps& m, const BlendWeights& blend, int stride) {
+  ViewEquations e;
+  e.eye = vec3(centerOf(m.camera));
+  e.first.push_back(0);
+  for (int y = 0; y < blend.height; ++y) {
+    for (int x = 0; x < blend.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * blend.width + x;
+      const std::uint32_t begin = blend.first[i], end = blend.first[i + 1];
+      if (begin == end || !kept(x, y, stride)) continue;
+      if (!(m.base_color_weight.values[i] > 0) && !(m.ao_weight.values[i] > 0)) continue;
+      float alpha = 0;
+      for (std::uint32_t k = begin; k < end; ++k) alpha += blend.weight[k];
+      const auto [target, importance] = demand(m, i, alpha);
+      e.gaussian.insert(e.gaussian.end(), blend.gaussian.begin() + begin, blend.gaussian.begin() + end);
+      e.weight.insert(e.weight.end(), blend.weight.begin() + begin, blend.weight.begin() + end);
+      e.target.push_back(target);
+      e.importance.push_back(importance);
+      e.first.push_back(static_cast<std::uint32_t>(e.gaussian.size()));
+    }
+  }
+  return e;
+}
+
+std::vector<ViewEquations> collect(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+                                   ComputeDevice& device, Progress& progress) {
+  const GaussianBuffers buffers = toBuffers(cloud);
+  std::unique_ptr<Rasterizer> rasterizer;
+  std::vector<ViewEquations> views;
+  int stride = 1;
+  progress.expect(static_cast<std::int64_t>(maps.size()));
+  for (const MaterialMaps& m : maps) {
+    progress.step();
+    if (!rasterizer || rasterizer->desc().width != m.camera.width ||
+        rasterizer->desc().height != m.camera.height) {
+      rasterizer = device.newRasterizer(
+          {.width = m.camera.width, .height = m.camera.height, .color = false, .geometry = true});
+    }
+    ViewEquations e = equationsOf(m, rasterizer->blendWeights(buffers, m.camera), stride);
+    const std::size_t expected = e.gaussian.size() * maps.size();
+    if (views.empty() && expected > kMaxEntries) {
+      stride = static_cast<int>(expected / kMaxEntries + 1);
+      logInfo("material fit: {} million blend weights are too many, 1 pixel in {} is used",
+              expected / 1'000'000, stride);
+      e = equationsOf(m, rasterizer->blendWeights(buffers, m.camera), stride);
+    }
+    views.push_back(std::move(e));
+  }
+  return views;
+}
+
+// The normal equations of all views, never formed: products only.
+class NormalEquations {
+ public:
+  NormalEquations(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, float regularization,
+                  ComputeDevice& device, Progress& progress)
+      : cloud_(cloud), regularization_(regularization), views_(collect(maps, cloud, device, progress)) {
+    // Row sums stand for how much the pictures say about a Gaussian; the diagonal preconditions.
+    row_sum_.assign(cloud.size(), vec4(0));
+    coverage_.assign(cloud.size(), vec4(0));
+    mean_.assign(cloud.size(), vec4(0));
+    diagonal_.assign(cloud.size() * kShCount, vec4(0));
+    forViews([&](const ViewEquations& v, std::vector<vec4>& out) { squares(v, out); },
+             [&](std::size_t i, const std::array<float, kShCount>& b, vec4 s) {
+               for (int k = 0; k < kShCount; ++k) diagonal_[i * kShCount + k] += b[k] * b[k] * s;
+             });
+    forViews([&](const ViewEquations& v, std::vector<vec4>& out) { project(v, out, Row::Importance); },
+             [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { row_sum_[i] += s; });
+    forViews([&](const ViewEquations& v, std::vector<vec4>& out) { project(v, out, Row::Seen); },
+             [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { coverage_[i] += s; });
+    forViews([&](const ViewEquations& v, std::vector<vec4>& out) { project(v, out, Row::Target); },
+             [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { mean_[i] += s; });
+    for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+      diagonal_[i] += pull(i % kShCount) * row_sum_[i / kShCount];
+    }
+  }
+
+  // Weighted back-projection (methods 5.10): DC only; Gaussians that no weighted pixel sees borrow from
+  // neighbours.
+  MaterialCoefficients firstGuess() const {
+    MaterialCoefficients x(cloud_.size() * kShCount, vec4(0));
+    for (int channel : {0, 3}) {  // base colour's three share their pixels, AO has its own
+      std::vector<std::uint32_t> seen;
+      std::vector<vec3> positions;
+      for (std::size_t i = 0; i < cloud_.size(); ++i) {
+        if (coverage_[i][channel] < kSeen) continue;
+        seen.push_back(static_cast<std::uint32_t>(i));
+        positions.push_back(cloud_.position_m[i]);
+      }
+      if (seen.empty()) continue;
+      const KdTree tree(positions);
+      const int last = channel == 0 ? 3 : 4;
+      parallelFor(cloud_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          for (int c = channel; c < last; ++c)
+            x[i * kShCount][c] = (guess(i, c, channel, tree, seen) - 0.5f) / kShC0;
+        }
+      });
+    }
+    return x;
+  }
+
+  // B^T W^T D (target - 0.5 alpha - W B x): the right-hand side for a step away from x.
+  MaterialCoefficients residual(const MaterialCoefficients& x) const {
+    MaterialCoefficients r(x.size(), vec4(0));
+    const auto evaluate = [&](std::size_t i, const std::array<float, kShCount>& b) {
+      return 0.5f + at(x, i, b);
+    };
+    forViews([&](const ViewEquations& v, std::vector<vec4>& out) { misfit(v, out, evaluate, true); },
+             [&](std::size_t i, const std::array<float, kShCount>& b, vec4 s) {
+               for (int k = 0; k < kShCount; ++k) r[i * kShCount + k] += b[k] * s;
+             });
+    return r;
+  }
+
+  // (B^T W^T D W B + pull) p.
+  MaterialCoefficients times(const MaterialCoefficients& p) const {
+    MaterialCoefficients q(p.size());
+    parallelFor(p.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) q[i] = pull(i % kShCount) * row_sum_[i / kShCount] * p[i];
+    });
+    const auto evaluate = [&](std::size_t i, const std::array<float, kShCount>& b) { return at(p, i, b); };
+    forViews([&](const ViewEquations& v, std::vector<vec4>& out) { misfit(v, out, evaluate, false); },
+             [&](std::size_t i, const std::array<float, kShCount>& b, vec4 s) {
+               for (int k = 0; k < kShCount; ++k) q[i * kShCount + k] += b[k] * s;
+             });
+    return q;
+  }
+
+  const std::vector<vec4>& diagonal() const { return diagonal_; }
+
+ private:
+  enum class Row { Importance, Seen, Target };
+
+  float pull(std::size_t k) const { return k == 0 ? kPrior : regularization_; }
+
+  static vec4 at(const MaterialCoefficients& x, std::size_t gaussian, const std::array<float, kShCount>& b) {
+    vec4 v(0);
+    for (int k = 0; k < kShCount; ++k) v += b[k] * x[gaussian * kShCount + k];
+    return v;
+  }
+
+  std::array<float, kShCount> basis(const ViewEquations& v, std::size_t gaussian) const {
+    const vec3 to = cloud_.position_m[gaussian] - v.eye;
+    return shBasis(to / std::max(glm::length(to), 1e-6f));
+  }
+
+  // view(v, out) adds a vec4 a Gaussian; join(gaussian, basis, vec4) takes it over, views in their order.
+  template <class View, class Join>
+  void forViews(View&& view, Join&& join) const {
+    std::vector<std::vector<vec4>> sums(std::min(kViewsTogether, views_.size()));
+    for (std::size_t first = 0; first < views_.size(); first += kViewsTogether) {
+      const std::size_t count = std::min(kViewsTogether, views_.size() - first);
+      parallelFor(count, 1, [&](std::size_t i, std::size_t) {
+        sums[i].assign(cloud_.size(), vec4(0));
+        view(views_[first + i], sums[i]);
+      });
+      parallelFor(cloud_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          for (std::size_t v = 0; v < count; ++v) {
+            if (sums[v][i] != vec4(0)) join(i, basis(views_[first + v], i), sums[v][i]);
+          }
+        }
+      });
+    }
+  }
+
+  static void squares(const ViewEquations& v, std::vector<vec4>& out) {
+    for (std::size_t r = 0; r < v.rows(); ++r) {
+      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) {
+        out[v.gaussian[k]] += v.weight[k] * v.weight[k] * v.importance[r];
+      }
+    }
+  }
+
+  static void project(const ViewEquations& v, std::vector<vec4>& out, Row kind) {
+    for (std::size_t r = 0; r < v.rows(); ++r) {
+      const vec4 importance = v.importance[r];
+      vec4 value = importance;
+      if (kind == Row::Seen) value = vec4(glm::greaterThan(importance, vec4(0)));
+      if (kind == Row::Target) {
+        float alpha = 0;
+        for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) alpha += v.weight[k];
+        value = importance * v.target[r] / alpha;
+      }
+      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) out[v.gaussian[k]] += v.weight[k] * value;
+    }
+  }
+
+  // W^T D (W values), or W^T D (target - W values).
+  template <class Evaluate>
+  void misfit(const ViewEquations& v, std::vector<vec4>& out, Evaluate&& evaluate,
+              bool against_target) const {
+    std::vector<vec4> values(cloud_.size());
+    std::vector<std::uint8_t> known(cloud_.size(), 0);
+    for (const std::uint32_t g : v.gaussian) {
+      if (known[g]) continue;
+      values[g] = evaluate(g, basis(v, g));
+      known[g] = 1;
+    }
+    for (std::size_t r = 0; r < v.rows(); ++r) {
+      vec4 sum(0);
+      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) sum += v.weight[k] * values[v.gaussian[k]];
+      const vec4 value = v.importance[r] * (against_target ? v.target[r] - sum : sum);
+      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) out[v.gaussian[k]] += v.weight[k] * value;
+    }
+  }
+
+  float guess(std::size_t i, int c, int channel, const KdTree& tree,
+              std::span<const std::uint32_t> seen) const {
+    if (coverage_[i][channel] >= kSeen) return mean_[i][c] / row_sum_[i][c];
+    float sum = 0, count = 0;
+    for (const Neighbor& n : tree.nearest(cloud_.position_m[i], kNeighbors)) {
+      const std::uint32_t g = seen[n.index];
+      sum += mean_[g][c] / row_sum_[g][c];
+      count += 1;
+    }
+    return sum / count;
+  }
+
+  const GaussianCloud& cloud_;
+  float regularization_;
+  std::vector<ViewEquations> views_;
+  std::vector<vec4> row_sum_, coverage_, mean_;  // of importance w, of w where seen, of importance w target
+  std::vector<vec4> diagonal_;
+};
+
+dvec4 dot(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+  return parallelReduce(
+      a.size(), 1 << 14, dvec4(0),
+      [&](std::size_t begin, std::size_t end) {
+        dvec4 sum(0);
+        for (std::size_t i = begin; i < end; ++i) sum += dvec4(a[i]) * dvec4(b[i]);
+        return sum;
+      },
+      [](dvec4 x, dvec4 y) { return x + y; });
+}
+
+vec4 quotient(dvec4 a, dvec4 b) {
+  vec4 q(0);
+  for (int c = 0; c < 4; ++c) q[c] = b[c] > 0 ? static_cast<float>(a[c] / b[c]) : 0.0f;
+  return q;
+}
+
+template <class Body>
+void forAll(std::size_t count, Body&& body) {
+  parallelFor(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+// Preconditioned conjugate gradients, four systems abreast, from x in place.
+void descend(const NormalEquations& a, MaterialCoefficients& x, int iterations, Progress& progress) {
+  progress.expect(iterations);
+  const std::vector<vec4>& diagonal = a.diagonal();
+  MaterialCoefficients r = a.residual(x), z(r.size()), p;
+  const auto precondition = [&] {
+    forAll(r.size(), [&](std::size_t i) {
+      for (int c = 0; c < 4; ++c) z[i][c] = diagonal[i][c] > 0 ? r[i][c] / diagonal[i][c] : 0.0f;
+    });
+  };
+  precondition();
+  p = z;
+  dvec4 rz = dot(r, z);
+  const dvec4 start = rz;
+  for (int i = 0; i < iterations; ++i) {
+    progress.step();
+    if (glm::all(glm::lessThanEqual(rz, kConverged * start))) break;
+    const MaterialCoefficients q = a.times(p);
+    const vec4 step = quotient(rz, dot(p, q));
+    forAll(r.size(), [&](std::size_t j) {
+      x[j] += step * p[j];
+      r[j] -= step * q[j];
+    });
+    precondition();
+    const dvec4 next = dot(r, z);
+    const vec4 carry = quotient(next, rz);
+    rz = next;
+    forAll(r.size(), [&](std::size_t j) { p[j] = z[j] + carry * p[j]; });
+  }
+}
+
+}  // namespace
+
+MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+                               const FitMaterialsOptions& options, ComputeDevice& device,
+                               Progress& progress) {
+  Progress collecting = progress.part(0.3, "collecting blend weights");
+  const NormalEquations equations(maps, cloud, static_cast<float>(options.regularization), device,
+                                  collecting);
+  MaterialCoefficients x = equations.firstGuess();
+  Progress solving = progress.part(0.7, "solving for materials");
+  descend(equations, x, options.linear_iterations, solving);
+  return x;
+}
+
+}  // namespace beam

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The 2D maps as third-order SH by weighted linear least squares (methods 5.10): geometry is fixed, so a
+// picture is linear in the coefficients; blend weights are cached once, conjugate gradients do the rest.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/method/fit_materials.h"
+
+namespace beam {
+
+// Base colour in xyz, ambient occlusion in w: [gaussian * kShCount + k]. Solved together, as four systems
+// that share their matrix's pattern.
+using MaterialCoefficients = std::vector<vec4>;
+
+MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+                               const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress);
+
+}  // namespace beam

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/fit_surface.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/math/knn.h"
+#include "core/method/training_views.h"
+#include "core/method/visual_hull.h"
+#include "core/optim/mcmc.h"
+#include "core/optim/normal_loss.h"
+#include "core/optim/schedule.h"
+
+namespace beam {
+namespace {
+
+constexpr int kNeighbors = 12;
+constexpr float kSeedOpacity = 0.3f;
+constexpr float kSeedThinness = 0.35f;  // of the in-plane size: seeds lie on a surface
+constexpr float kInsideShare = 0.9f;    // of the views: a Gaussian outside more masks is pruned (methods 3.8)
+
+// The direction in which the points scatter least: smallest eigenvector of their covariance, by inverse
+// iteration.
+vec3 planeNormal(std::span<const vec3> points) {
+  dvec3 mean(0);
+  for (const vec3& p : points) mean += dvec3(p);
+  mean /= static_cast<double>(points.size());
+  dmat3 covariance(0.0);
+  for (const vec3& p : points) covariance += glm::outerProduct(dvec3(p) - mean, dvec3(p) - mean);
+  const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
+  if (!(trace > 0)) return {0, 0, 1};
+  const dmat3 inverse = glm::inverse(covariance / trace + dmat3(1e-6));
+  dvec3 n = glm::normalize(dvec3(0.3, 0.5, 0.81));
+  for (int i = 0; i < 24; ++i) n = glm::normalize(inverse * n);
+  return vec3(n);
+}
+
+quat rotationFromZ(vec3 n) {
+  const vec3 z(0, 0, 1);
+  const float c = glm::dot(z, n);
+  if (c < -0.9999f) return quat(0, 1, 0, 0);
+  const vec3 axis = glm::cross(z, n);
+  return glm::normalize(quat(1 + c, axis.x, axis.y, axis.z));
+}
+
+// One flat Gaussian a seed, as large as its distance to its neighbours, lying in their plane.
+GaussianCloud initialCloud(const PointCloud& seeds) {
+  const std::size_t n = seeds.position_m.size();
+  const KdTree tree(seeds.position_m);
+  GaussianCloud c;
+  c.position_m = seeds.position_m;
+  c.rotation.resize(n);
+  c.scale_m.resize(n);
+  c.opacity.assign(n, kSeedOpacity);
+  c.color = ShBlock(n, 3);
+  parallelFor(n, 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::vector<Neighbor> near = tree.nearest(seeds.position_m[i], kNeighbors + 1);
+      std::vector<vec3> around;
+      float squared = 0;
+      for (const Neighbor& k : near) around.push_back(seeds.position_m[k.index]);
+      const std::size_t three = std::min<std::size_t>(4, near.size());
+      for (std::size_t k = 1; k < three; ++k)
+        squared += near[k].squared_distance / static_cast<float>(three - 1);
+      const float size = std::sqrt(std::max(squared, 1e-7f));
+      c.rotation[i] = rotationFromZ(planeNormal(around));
+      c.scale_m[i] = vec3(size, size, kSeedThinness * size);
+      for (int k = 0; k < 3; ++k) c.color.of(i)[k] = (seeds.color[i][k] / 255.0f - 0.5f) / kShC0;
+    }
+  });
+  return c;
+}
+
+// 1.1 x the radius of the camera centres around their mean: what position rates are relative to
+// (methods 1.11).
+float sceneExtent(std::span<const FrameView> views) {
+  dvec3 mean(0);
+  for (const FrameView& v : views) mean += centerOf(v.camera) / static_cast<double>(views.size());
+  double radius = 0;
+  for (const FrameView& v : views) radius = std::max(radius, glm::length(centerOf(v.camera) - mean));
+  return static_cast<float>(1.1 * radius);
+}
+
+class SurfaceTrainer {
+ public:
+  SurfaceTrainer(std::span<const FrameView> views, const GaussianCloud& cloud,
+                 const FitSurfaceOptions& options, ComputeDevice& device)
+      : options_(options),
+        views_(cropToMasks(views)),
+        model_(cloud),
+        ops_(device.newTrainingOps()),
+        device_(device),
+        extent_(sceneExtent(views)) {
+    for (const TrainingView& v : views_) cameras_.push_back(v.camera);
+    refine_start_ = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
+  }
+
+  // For a cloud whose values hold the filter already.
+  void takeFilterOut() {
+    model_.updateFilter(cameras_, static_cast<float>(options_.filter));
+    model_.unbakeFilter();
+  }
+
+  void run(int begin, int end, bool geometry, Progress& progress, const CloudPreview& preview) {
+    const RasterDesc desc{
+        .width = cameras_[0].width, .height = cameras_[0].height, .geometry = geometry, .gradients = true};
+    raster_ = device_.newRasterizer(desc);
+    progress.expect(end - begin);
+    auto shown = std::chrono::steady_clock::now();
+    const int first_cap = static_cast<int>(model_.size());
+    for (int step = begin; step < end; ++step) {
+      progress.step();
+      if (step % kFilterEvery == 0 || step == begin)
+        model_.updateFilter(cameras_, static_cast<float>(options_.filter));
+      trainOnce(step, step - begin + 1, geometry);
+      if (!geometry) changeCount(step, first_cap);
+      const auto now = std::chrono::steady_clock::now();
+      if (preview && now - shown > std::chrono::seconds(1)) {
+        preview(std::make_shared<GaussianCloud>(model_.cloud()));
+        shown = now;
+      }
+    }
+  }
+
+  void pruneOutsideHull(const VisualHull& hull) {
+    const GaussianBuffers& g = model_.physical();
+    std::vector<std::uint8_t> keep(model_.size(), 1);
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+      const auto v = hull.votes({g.plane(0)[i], g.plane(1)[i], g.plane(2)[i]});
+      if (v.seen > 0 && static_cast<float>(v.inside) < kInsideShare * static_cast<float>(v.seen)) keep[i] = 0;
+      if (model_.opacity(i) < kDeadOpacity) keep[i] = 0;
+    }
+    model_.keep(keep);
+  }
+
+  GaussianCloud cloud() const { return model_.cloud(); }
+
+ private:
+  static constexpr int kFilterEvery = 100;
+  static constexpr float kDeadOpacity = 0.005f;
+
+  int shDegree(int step) const { return std::min(3, step / std::max(1, options_.iterations / 30)); }
+
+  LearningRates rates(int step) const {
+    LearningRates r;
+    const auto decay = static_cast<float>(logLinear(1.0, 0.01, step, options_.iterations));
+    r.position_m = static_cast<float>(options_.position_rate) * decay * extent_;
+    r.opacity_logit = static_cast<float>(options_.opacity_rate);
+    r.log_scale = static_cast<float>(options_.scale_rate);
+    r.color_dc = static_cast<float>(options_.color_rate);
+    r.color_rest = r.color_dc / 20;
+    return r;
+  }
+
+  void trainOnce(int step, int adam_step, bool geometry) {
+    const TrainingView& view = views_[viewOfStep(step, views_.size(), options_.seed)];
+    const RandomStream random(options_.seed, step, 0xbac6u);
+    const vec3 background =
+        view.mask.empty() ? vec3(0) : vec3(random.uniform(0), random.uniform(1), random.uniform(2));
+    compose(view, background, target_);
+    model_.activate();
+    raster_->forward(model_.physical(), view.camera, shDegree(step), background, images_);
+    ops_->photometric(images_.color, target_, static_cast<float>(options_.ssim_weight), upstream_.color);
+    maskLoss(view);
+    if (geometry) {
+      for (Planes* p : {&upstream_.normal, &upstream_.depth, &upstream_.median_depth}) {
+        std::fill(p->values.begin(), p->values.end(), 0.0f);
+      }
+      normalLoss(images_, view.camera.intrinsics,
+                 {.weight = static_cast<float>(options_.normal_weight),
+                  .expected_share = static_cast<float>(options_.expected_depth_share)},
+                 upstream_);
+    }
+    raster_->backward(upstream_, gradients_);
+    const Regularizers regularizers = geometry
+                                          ? Regularizers{}
+                                          : Regularizers{static_cast<float>(options_.opacity_regularizer),
+                                                         static_cast<float>(options_.scale_regularizer)};
+    const LearningRates r = rates(step);
+    model_.step(gradients_, r, shDegree(step), regularizers, adam_step, *ops_);
+    if (!geometry) model_.addNoise(static_cast<float>(options_.noise) * r.position_m, options_.seed, step);
+  }
+
+  // mask_weight * mean |A - mask|; its gradient into the alpha plane.
+  void maskLoss(const TrainingView& view) {
+    Planes& d = upstream_.alpha;
+    const std::size_t pixels = images_.alpha.planeSize();
+    if (d.planeSize() != pixels) d = Planes(images_.alpha.width, images_.alpha.height, 1);
+    if (view.mask.empty()) return std::fill(d.values.begin(), d.values.end(), 0.0f);
+    const auto unit = static_cast<float>(options_.mask_weight / static_cast<double>(pixels));
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const float difference = images_.alpha.values[i] - view.mask.pixels[i] / 255.0f;
+      d.values[i] = difference > 0 ? unit : difference < 0 ? -unit : 0.0f;
+    }
+  }
+
+  // MCMC every `interval` steps; the growth reaches the cap half way through the appearance steps.
+  void changeCount(int step, int first_count) {
+    const int interval = options_.iterations >= 10000 ? 100 : 50;
+    const int start = std::min(500, refine_start_ / 10), stop = refine_start_ * 5 / 6;
+    if (step < start || step >= stop || step % interval != 0) return;
+    relocateDead(model_, options_.seed, step);
+    const double rounds = std::max(1.0, (refine_start_ * 0.5 - start) / interval);
+    const double factor = std::pow(static_cast<double>(options_.cap) / first_count, 1.0 / rounds);
+    grow(model_, std::max(1.0, factor), options_.cap, options_.seed, step);
+  }
+
+  FitSurfaceOptions options_;
+  std::vector<TrainingView> views_;
+  std::vector<Camera> cameras_;
+  GaussianModel model_;
+  std::unique_ptr<TrainingOps> ops_;
+  ComputeDevice& device_;
+  std::unique_ptr<Rasterizer> raster_;
+  float extent_;
+  int refine_start_ = 0;
+  Planes target_;
+  RasterImages images_, upstream_;
+  GaussianBuffers gradients_;
+};
+
+}  // namespace
+
+void describe(Fields& f, FitSurfaceOptions& o) {
+  f.field(
+      {.name = "iterations",
+       .label = "Iterations",
+       .help =
+           "Optimiser steps of a frame in all; the paper's schedule takes 15,000 + 15,000 for a lone frame.",
+       .min = 10,
+       .max = 1e6},
+      o.iterations);
+  f.field({.name = "refine_fraction",
+           .label = "Share with normals",
+           .help = "Share of the steps that also follow E_normal, at the end.",
+           .min = 0,
+           .max = 1},
+          o.refine_fraction);
+  f.field({.name = "cap",
+           .label = "Gaussians",
+           .help = "Most Gaussians of a frame (BEAM fig. 8: about 140,000).",
+           .min = 100,
+           .max = 4e6},
+          o.cap);
+  f.field({.name = "seed",
+           .label = "Seed",
+           .help = "Of all random numbers.",
+           .min = 0,
+           .max = 1e9,
+           .advanced = true},
+          o.seed);
+  f.field({.name = "seed_share",
+           .label = "Seeds",
+           .help = "Seed points as a share of the cap; growth adds the rest.",
+           .min = 0.01,
+           .max = 1,
+           .advanced = true},
+          o.seed_share);
+  f.field({.name = "ssim_weight",
+           .label = "D-SSIM share",
+           .help = "lambda of the colour loss (eq. 8: 0.2).",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.ssim_weight);
+  f.field({.name = "mask_weight",
+           .label = "Mask weight",
+           .help = "Pull of the coverage towards the mask; 0 is off.",
+           .min = 0,
+           .max = 10,
+           .advanced = true},
+          o.mask_weight);
+  f.field({.name = "filter",
+           .label = "3D filter",
+           .help = "Smallest Gaussian as a share of Mip-Splatting's filter.",
+           .min = 0,
+           .max = 4,
+           .advanced = true},
+          o.filter);
+  f.field({.name = "position_rate",
+           .label = "Position rate",
+           .help = "First learning rate of positions, times the scene extent; falls to a hundredth.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.position_rate);
+  f.field({.name = "scale_rate",
+           .label = "Scale rate",
+           .help = "Learning rate of log scales.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.scale_rate);
+  f.field({.name = "opacity_rate",
+           .label = "Opacity rate",
+           .help = "Learning rate of opacity logits.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.opacity_rate);
+  f.field({.name = "color_rate",
+           .label = "Colour rate",
+           .help = "Learning rate of the first SH band; others a 20th.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.color_rate);
+  f.field({.name = "noise",
+           .label = "Exploration noise",
+           .help = "MCMC's noise, times the position rate.",
+           .min = 0,
+           .max = 1e8,
+           .advanced = true},
+          o.noise);
+  f.field({.name = "opacity_regularizer",
+           .label = "Opacity regulariser",
+           .help = "Of MCMC, on the mean opacity.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.opacity_regularizer);
+  f.field({.name = "scale_regularizer",
+           .label = "Scale regulariser",
+           .help = "Of MCMC, on the mean scale.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.scale_regularizer);
+  f.group("refine", [&] {
+    f.field({.name = "normal_weight",
+             .label = "Normal weight",
+             .help = "lambda_normal: agreement of blended normals with those of the depth (BEAM 3.1: 0.03).",
+             .min = 0,
+             .max = 10},
+            o.normal_weight);
+    f.field({.name = "expected_depth_share",
+             .label = "Share of the expected depth",
+             .help = "Of E_normal; the rest acts on the median depth (RaDe-GS: 0.4).",
+             .min = 0,
+             .max = 1,
+             .advanced = true},
+            o.expected_depth_share);
+  });
+}
+
+GaussianCloud fitAppearance(std::span<const FrameView> views, const PointCloud& seeds,
+                            const FitSurfaceOptions& options, ComputeDevice& device, Progress& progress,
+                            const CloudPreview& preview) {
+  SurfaceTrainer trainer(views, initialCloud(seeds), options, device);
+  const int end = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
+  trainer.run(0, end, false, progress, preview);
+  return trainer.cloud();
+}
+
+GaussianCloud refineGeometry(std::span<const FrameView> views, const GaussianCloud& cloud,
+                             const FitSurfaceOptions& options, ComputeDevice& device, Progress& progress,
+                             const CloudPreview& preview) {
+  SurfaceTrainer trainer(views, cloud, options, device);
+  const int begin = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
+  trainer.takeFilterOut();
+  trainer.run(begin, options.iterations, true, progress, preview);
+  trainer.pruneOutsideHull(VisualHull(views));
+  return trainer.cloud();
+}
+
+}  // namespace beam

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The photographs of a frame as training targets: cropped to the masks (with a margin), all of one size so
+// that one rasteriser serves them, composited on any background.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/scene/frame_views.h"
+
+namespace beam {
+
+struct TrainingView {
+  Camera camera;               // of the crop
+  Image<u8vec3> photo;         // sRGB
+  Image<std::uint8_t> mask;    // empty: everything counts
+  bool premultiplied = false;  // the photograph is black outside its mask: it already is value x coverage
+};
+
+// Crops of one common size, a multiple of 16 where the pictures allow it.
+std::vector<TrainingView> cropToMasks(std::span<const FrameView> views);
+
+// What the view should look like on `background`, sRGB-encoded: p + (1 - a) b for premultiplied photographs,
+// else a p + (1 - a) b. `target` is resized.
+void compose(const TrainingView& view, vec3 background, Planes& target);
+
+}  // namespace beam

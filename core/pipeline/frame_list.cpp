@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/frame_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "core/base/error.h"
+
+namespace beam {
+namespace {
+
+[[noreturn]] void notUnderstood(std::string_view item) {
+  throw Error(
+      Error::Kind::Usage,
+      fmt::format("frames: \"{}\" is not understood (expected for example 0-7, 1,5, 1-9x2 or all)", item));
+}
+
+long long parseNumber(std::string_view text, std::string_view item) {
+  long long value = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || failed != std::errc() || end != text.data() + text.size() || value < 0)
+    notUnderstood(item);
+  return value;
+}
+
+struct Span {
+  long long first, last, stride;
+};
+
+// "5", "1-9" or "1-9x2".
+Span parseSpan(std::string_view item) {
+  const std::size_t dash = item.find('-');
+  if (dash == std::string_view::npos) {
+    const long long n = parseNumber(item, item);
+    return {n, n, 1};
+  }
+  const std::size_t times = item.find('x', dash);
+  const bool strided = times != std::string_view::npos;
+  const Span span{
+      parseNumber(item.substr(0, dash), item),
+      parseNumber(item.substr(dash + 1, strided ? times - dash - 1 : std::string_view::npos), item),
+      strided ? parseNumber(item.substr(times + 1), item) : 1};
+  if (span.last < span.first || span.stride < 1) notUnderstood(item);
+  return span;
+}
+
+// "0 to 9" of the numbers that the capture has.
+std::string numbersText(const std::map<long long, FrameIndex>& by_number) {
+  if (by_number.empty()) return "no numbered frames";
+  return fmt::format("{} frames, {} to {}", by_number.size(), by_number.begin()->first,
+                     by_number.rbegin()->first);
+}
+
+}  // namespace
+
+long long frameNumber(std::string_view name) {
+  const std::size_t last = name.find_last_of("0123456789");
+  if (last == std::string_view::npos) return -1;
+  std::size_t first = last;
+  while (first > 0 && name[first - 1] >= '0' && name[first - 1] <= '9') --first;
+  long long value = -1;
+  std::from_chars(name.data() + first, name.data() + last + 1, value);
+  return value;
+}
+
+std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<std::string>& frames) {
+  std::map<long long, FrameIndex> by_number;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    by_number.emplace(frameNumber(frames[i]), FrameIndex{static_cast<std::int32_t>(i)});
+  }
+  by_number.erase(-1);
+  std::set<FrameIndex> chosen;
+  while (true) {
+    const std::size_t comma = list.find(',');
+    const std::string_view item = list.substr(0, comma);
+    const auto named = std::find(frames.begin(), frames.end(), item);
+    if (item == "all") {
+      for (std::size_t i = 0; i < frames.size(); ++i) chosen.insert(FrameIndex{static_cast<std::int32_t>(i)});
+    } else if (named != frames.end()) {
+      chosen.insert(FrameIndex{static_cast<std::int32_t>(named - frames.begin())});
+    } else {
+      const Span span = parseSpan(item);
+      // Both ends must exist: a typo must not shrink a run silently. Gaps inside are the capture's own.
+      if (!by_number.count(span.first) || by_number.rbegin()->first < span.last) {
+        throw Error(Error::Kind::Usage, fmt::format("frames: \"{}\" reaches beyond the capture, which has {}",
+                                                    item, numbersText(by_number)));
+      }
+      for (auto it = by_number.find(span.first); it != by_number.end() && it->first <= span.last; ++it) {
+        if ((it->first - span.first) % span.stride == 0) chosen.insert(it->second);
+      }
+    }
+    if (comma == std::string_view::npos) break;
+    list.remove_prefix(comma + 1);
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+}  // namespace beam

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/input_digests.h"
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include "core/base/error.h"
+#include "core/pipeline/file_digest.h"
+
+namespace beam {
+namespace {
+
+template <class T>
+Digest digestOfValues(const std::vector<T>& values) {
+  return digestOf(std::as_bytes(std::span(values)));
+}
+
+// By decoded content, for sources without files; an unreadable picture is a fact like any other.
+std::string contentText(const FrameSource& source, ViewIndex view, FrameIndex frame) {
+  try {
+    return fmt::format("{} {}", digestOfValues(source.photo(view, frame).pixels).hex(),
+                       digestOfValues(source.mask(view, frame).pixels).hex());
+  } catch (const Error&) {
+    return "unreadable";
+  }
+}
+
+}  // namespace
+
+std::string calibrationText(const CaptureSet& capture) {
+  std::string text;
+  for (const View& view : capture.views) {
+    const Camera& c = view.camera;
+    const dquat& q = c.camera_from_world.rotation;
+    const dvec3& t = c.camera_from_world.translation_m;
+    text += fmt::format("view {}:{} {} {}x{} k {} {} {} {} q {} {} {} {} t {} {} {}\n", view.name.size(),
+                        view.name, view.split == Split::Train ? "train" : "test", c.width, c.height,
+                        c.intrinsics.fx, c.intrinsics.fy, c.intrinsics.cx, c.intrinsics.cy, q.w, q.x, q.y,
+                        q.z, t.x, t.y, t.z);
+  }
+  text += fmt::format("seed points {} {} {}\n", capture.seed_points.position_m.size(),
+                      digestOfValues(capture.seed_points.position_m).hex(),
+                      digestOfValues(capture.seed_points.color).hex());
+  return text;
+}
+
+Digest InputDigests::calibration(const CaptureSet& capture) const {
+  return digestOf(calibrationText(capture));
+}
+
+Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame) const {
+  std::string text;
+  for (std::size_t i = 0; i < capture.views.size(); ++i) {
+    const ViewIndex view{static_cast<std::int32_t>(i)};
+    if (capture.views[i].split != Split::Train || !capture.source->has(view, frame)) continue;
+    text += fmt::format("view {}:{}", capture.views[i].name.size(), capture.views[i].name);
+    const std::vector<std::string> names = capture.source->files(view, frame);
+    for (const std::string& name : names) text += fmt::format(" {}", file(name).hex());
+    if (names.empty()) text += fmt::format(" {}", contentText(*capture.source, view, frame));
+    text += '\n';
+  }
+  return digestOf(text);
+}
+
+Digest InputDigests::file(const std::filesystem::path& path) const {
+  const std::string stamp = fileStamp(path);
+  {
+    std::lock_guard lock(mutex_);
+    if (const auto known = files_.find(path.string());
+        known != files_.end() && known->second.stamp == stamp) {
+      return known->second.digest;
+    }
+  }
+  const Digest digest = digestOfFile(path);
+  if (justChanged(path)) return digest;
+  std::lock_guard lock(mutex_);
+  files_[path.string()] = {stamp, digest};
+  return digest;
+}
+
+}  // namespace beam

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Digests of what the user's files say, for keys: by content, never by path or time. Files are hashed once
+// and again only when size, time or inode changed.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "core/base/hash.h"
+#include "core/scene/capture.h"
+
+namespace beam {
+
+// Cameras, split and seed points as text: one line a view, numbers in shortest round-trip form.
+std::string calibrationText(const CaptureSet& capture);
+
+// Safe to use from several threads.
+class InputDigests {
+ public:
+  Digest calibration(const CaptureSet& capture) const;
+  // The training views' pictures and masks of a frame.
+  Digest pictures(const CaptureSet& capture, FrameIndex frame) const;
+  Digest file(const std::filesystem::path& path) const;
+
+ private:
+  mutable std::mutex mutex_;
+  struct Known {
+    std::string stamp;  // size, time, inode
+    Digest digest;
+  };
+  mutable std::map<std::string, Known> files_;
+};
+
+}  // namespace beam

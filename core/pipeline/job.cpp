@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/job.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <deque>
+#include <new>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/base/parallel.h"
+#include "core/pipeline/version.h"
+#include "core/render/device.h"
+
+namespace beam {
+namespace {
+
+std::uint64_t peakMemoryBytes() {
+  struct rusage usage {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// A bad frame does not stop the others; a full disk or memory would stop them too.
+bool spoilsOneFrameOnly(Error::Kind kind) { return kind == Error::Kind::Data || kind == Error::Kind::Bug; }
+
+}  // namespace
+
+Job::Job(const Project& project, ComputeDevice& device, std::stop_token stop, Tell tell,
+         Slot<GaussianCloud>& preview)
+    : project_(project), device_(device), stop_(std::move(stop)), tell_(std::move(tell)), preview_(preview) {
+  sink_ = addLogSink([this](const LogRecord& record) {
+    if (record.level != LogLevel::Warning) return;
+    {
+      std::lock_guard lock(warnings_mutex_);
+      warnings_.push_back(record.text);
+    }
+    tell_(JobWarning{record.text});
+  });
+}
+
+Job::~Job() { removeLogSink(sink_); }
+
+JobFinished Job::run(const RunRequest& request) {
+  const auto fail = [&](Error::Kind kind, std::string message) {
+    finished_.outcome = JobOutcome::Failed;
+    finished_.kind = kind;
+    finished_.message = std::move(message);
+  };
+  try {
+    runAll(request);
+    finished_.outcome = finished_.failed.empty() ? JobOutcome::Done : JobOutcome::DoneWithFailures;
+  } catch (const Cancelled&) {
+    finished_.outcome = JobOutcome::Cancelled;
+  } catch (const Error& e) {
+    fail(e.kind(), e.what());
+  } catch (const std::bad_alloc&) {
+    fail(Error::Kind::OutOfMemory,
+         fmt::format(
+             "out of memory in {}{}; close other programs, or lower surface.cap or raise capture.downscale",
+             now_.step.empty() ? "the preparation" : now_.step,
+             now_.frame ? ", frame " + now_.frame_name : std::string()));
+  } catch (const std::exception& e) {
+    fail(Error::Kind::Bug, e.what());
+  }
+  finished_.seconds = secondsSince(started_);
+  return finished_;
+}
+
+void Job::runAll(const RunRequest& request) {
+  const RunPlan plan = makeRunPlan(project_, request);
+  finished_.notes = plan.notes;
+  if (!project_.readOnly()) project_.store().removeStale();
+  const StageRegistry& stages = project_.setup().stages;
+  for (const std::string& step : plan.project_steps) weight_total_ += stages.step(step).weight;
+  for (const std::string& step : plan.frame_steps) {
+    weight_total_ += stages.step(step).weight * static_cast<double>(plan.frames.size());
+  }
+  runProjectSteps(plan);
+  runFrames(plan);
+}
+
+void Job::runProjectSteps(const RunPlan& plan) {
+  for (const std::string& step : plan.project_steps) {
+    while (runStep(step, std::nullopt) == Ended::Busy) waitALittle();
+  }
+}
+
+void Job::runFrames(const RunPlan& plan) {
+  std::deque<FrameIndex> todo(plan.frames.begin(), plan.frames.end());
+  std::size_t busy_in_a_row = 0;
+  while (!todo.empty()) {
+    const FrameIndex frame = todo.front();
+    todo.pop_front();
+    if (runFrame(plan, frame) != Ended::Busy) {
+      busy_in_a_row = 0;
+      continue;
+    }
+    // Somebody else is at this frame: take the others first, and wait only when all are taken.
+    todo.push_back(frame);
+    if (++busy_in_a_row >= todo.size()) waitALittle();
+  }
+}
+
+Job::Ended Job::runFrame(const RunPlan& plan, FrameIndex frame) {
+  bool failed = false;
+  for (const std::string& step : plan.frame_steps) {
+    if (failed) {
+      weight_total_ -= project_.setup().stages.step(step).weight;
+      continue;
+    }
+    try {
+      if (runStep(step, frame) == Ended::Busy) return Ended::Busy;
+    } catch (const Error& e) {
+      if (!spoilsOneFrameOnly(e.kind())) throw;
+      failFrame(refTo(step, frame), e.what());
+      weight_total_ -= weight_now_;
+      failed = true;
+    }
+  }
+  return Ended::Computed;
+}
+
+Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame) {
+  if (stop_.stop_requested()) throw Cancelled();
+  const std::pair<std::string, int> id(step, frame ? frame->value : -1);
+  if (acknowledged_.count(id)) return Ended::Reused;
+  now_ = refTo(step, frame);
+  if (stages_told_.emplace(stageOf(step), id.second).second) {
+    tell_(StageStarted{stageOf(step), now_.frame, now_.frame_name});
+  }
+  const FrameIndex index = frame.value_or(FrameIndex{});
+  const KeyIngredients ingredients = project_.ingredients(step, index);
+  const Digest key = keyOf(ingredients);
+  weight_now_ = project_.setup().stages.step(step).weight;
+  const auto reuse = [&] {
+    weight_total_ -= weight_now_;
+    acknowledge(now_, key, true, 0);
+    return Ended::Reused;
+  };
+  if (project_.store().verified(key)) return reuse();
+  if (project_.readOnly()) {
+    throw Error(
+        Error::Kind::Storage,
+        fmt::format("\"{}\" is read-only: {} cannot be computed because its result could not be kept; make "
+                    "the folder writable or copy it",
+                    project_.folder().string(), step));
+  }
+  const std::optional<FileLock> lease = project_.store().tryLease(key);
+  if (!lease) return Ended::Busy;
+  if (project_.store().verified(key)) return reuse();  // published between the look and the lease
+  compute(now_, ingredients, key);
+  return Ended::Computed;
+}
+
+void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key) {
+  if (!log_) log_ = std::make_unique<SessionLog>(project_.folder());
+  step_started_ = Clock::now();
+  {
+    std::lock_guard lock(warnings_mutex_);
+    warnings_.clear();
+  }
+  ResultRecord record;
+  record.ingredients = ingredients;
+  record.frame = ref.frame_name;
+  project_.store().publish(key, std::move(record), [&](const std::filesystem::path& folder, ResultRecord& r) {
+    build(ref, folder, r);
+    checkInputs(ref, ingredients);
+  });
+  project_.store().clearFailure(key);
+  const double seconds = secondsSince(step_started_);
+  logInfo("{}{} done in {:.1f} s", ref.step, ref.frame ? ", frame " + ref.frame_name : std::string(),
+          seconds);
+  weight_done_ += weight_now_;
+  acknowledge(ref, key, false, seconds);
+}
+
+void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record) {
+  const StepInfo& info = project_.setup().stages.step(ref.step);
+  const FrameIndex frame = ref.frame.value_or(FrameIndex{});
+  Progress progress(stop_, [&](const ProgressReport& report) { reportProgress(ref, report); });
+  reportProgress(ref, {0, info.title, 0, 0});
+  StepContext context{
+      project_.capture(),
+      frame,
+      project_.environmentFile(),
+      folder,
+      {},
+      [this](std::string_view name) { return project_.value(name); },
+      device_,
+      progress,
+      [this](std::shared_ptr<const GaussianCloud> cloud) { preview_.publish(std::move(cloud)); },
+      {}};
+  for (const std::string& input : info.inputs) {
+    const std::optional<std::filesystem::path> found = project_.result(input, frame);
+    if (!found) {
+      throw Error(Error::Kind::Data,
+                  fmt::format("the result of {} that {} needs is gone; run again to compute it anew", input,
+                              ref.step));
+    }
+    context.inputs[input] = *found;
+  }
+  project_.makeStage(stageOf(ref.step))->run(info.id, context);
+  record.program_version = kProgramVersion;
+  record.device = device_.info().title;
+  record.threads = threadCount();
+  record.seconds = secondsSince(step_started_);
+  record.peak_memory_bytes = peakMemoryBytes();
+  record.scores = context.scores;
+  std::lock_guard lock(warnings_mutex_);
+  record.warnings = warnings_;
+}
+
+// A result made while its input changed would sit under a key that promises something else.
+void Job::checkInputs(const StepRef& ref, const KeyIngredients& before) const {
+  if (project_.ingredients(ref.step, ref.frame.value_or(FrameIndex{})).inputs == before.inputs) return;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("input files of {} changed while it ran; its result is not kept, run again", ref.step));
+}
+
+void Job::failFrame(const StepRef& ref, const std::string& message) {
+  const std::string told = fmt::format("frame {}: {} gave up: {}", ref.frame_name, ref.step, message);
+  try {
+    project_.store().noteFailure(project_.key(ref.step, *ref.frame), {ref.step, ref.frame_name, message});
+  } catch (const Error& e) {
+    logWarning("the failure of frame {} could not be noted: {}", ref.frame_name, e.what());
+  }
+  logDebug("{}", told);
+  const StepFailed failed{ref, message};
+  finished_.failed.push_back(failed);
+  tell_(failed);
+}
+
+void Job::acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds) {
+  acknowledged_.emplace(ref.step, ref.frame ? ref.frame->value : -1);
+  ++(reused ? finished_.reused : finished_.computed);
+  tell_(StepFinished{ref, key, reused, seconds});
+}
+
+void Job::reportProgress(const StepRef& ref, const ProgressReport& report) {
+  StepProgress event{ref, report};
+  const double worked = weight_done_ + weight_now_ * report.fraction;
+  event.job_fraction = weight_total_ > 0 ? worked / weight_total_ : 0;
+  event.seconds_elapsed = secondsSince(started_);
+  // Early guesses mislead more than they help.
+  if (event.job_fraction > 0.01 && event.seconds_elapsed > 2) {
+    event.seconds_left = event.seconds_elapsed * (1 - event.job_fraction) / event.job_fraction;
+  }
+  const double in_step = secondsSince(step_started_);
+  if (report.done > 0 && in_step > 0.5) event.rate = static_cast<double>(report.done) / in_step;
+  tell_(std::move(event));
+}
+
+void Job::waitALittle() const {
+  if (stop_.stop_requested()) throw Cancelled();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+StepRef Job::refTo(const std::string& step, std::optional<FrameIndex> frame) const {
+  return {step, frame,
+          frame ? project_.capture().frames[static_cast<std::size_t>(frame->value)] : std::string()};
+}
+
+double Job::secondsSince(Clock::time_point start) const {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace beam

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Job: the body of a run, on the job's thread. Only the runner makes one.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/slot.h"
+#include "core/pipeline/job_event.h"
+#include "core/pipeline/project.h"
+#include "core/pipeline/run_plan.h"
+#include "core/pipeline/session_log.h"
+
+namespace beam {
+
+class Job {
+ public:
+  using Tell = std::function<void(JobEvent)>;
+  Job(const Project& project, ComputeDevice& device, std::stop_token stop, Tell tell,
+      Slot<GaussianCloud>& preview);
+  ~Job();
+
+  // Never throws: what went wrong is in the answer.
+  JobFinished run(const RunRequest& request);
+
+ private:
+  enum class Ended { Computed, Reused, Busy };
+  using Clock = std::chrono::steady_clock;
+
+  void runAll(const RunRequest& request);
+  void runProjectSteps(const RunPlan& plan);
+  void runFrames(const RunPlan& plan);
+  // Busy: another process computes one of its steps; come back later.
+  Ended runFrame(const RunPlan& plan, FrameIndex frame);
+  Ended runStep(const std::string& step, std::optional<FrameIndex> frame);
+  void compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
+  void build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record);
+  void checkInputs(const StepRef& ref, const KeyIngredients& before) const;
+  void failFrame(const StepRef& ref, const std::string& message);
+  void acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds);
+  void reportProgress(const StepRef& ref, const ProgressReport& report);
+  void waitALittle() const;
+
+  StepRef refTo(const std::string& step, std::optional<FrameIndex> frame) const;
+  double secondsSince(Clock::time_point start) const;
+
+  const Project& project_;
+  ComputeDevice& device_;
+  std::stop_token stop_;
+  Tell tell_;
+  Slot<GaussianCloud>& preview_;
+  JobFinished finished_;
+  Clock::time_point started_ = Clock::now(), step_started_ = started_;
+  double weight_total_ = 0, weight_done_ = 0, weight_now_ = 0;
+  std::set<std::pair<std::string, int>> acknowledged_;  // step, frame or -1
+  std::set<std::pair<std::string, int>> stages_told_;
+  StepRef now_;  // the step at work, for messages
+  std::unique_ptr<SessionLog> log_;
+  int sink_ = 0;
+  std::mutex warnings_mutex_;
+  std::vector<std::string> warnings_;  // of the step at work
+};
+
+}  // namespace beam

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run tells the world. The console and the studio are two readers of the same stream.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/base/progress.h"
+#include "core/scene/ids.h"
+
+namespace beam {
+
+// Which piece of work an event is about. `frame` is absent for steps that serve the whole project.
+struct StepRef {
+  std::string step;  // full id: "surface.fit"
+  std::optional<FrameIndex> frame;
+  std::string frame_name;  // the capture's own; empty without frame
+};
+
+struct StageStarted {
+  std::string stage;  // "surface"
+  std::optional<FrameIndex> frame;
+  std::string frame_name;
+};
+
+struct StepProgress {
+  StepRef ref;
+  ProgressReport report;       // of this step
+  double job_fraction = 0;     // of the whole run, [0, 1]
+  double seconds_elapsed = 0;  // of the whole run
+  double seconds_left = -1;    // of the whole run, estimated; < 0: not known yet
+  double rate = 0;             // report.done a second; 0: not known yet
+};
+
+// Sent after the result is on disk for good: what is acknowledged here survives a kill.
+struct StepFinished {
+  StepRef ref;
+  Digest key;
+  bool reused = false;  // it was there already
+  double seconds = 0;
+};
+
+// One frame gave up; the run goes on with the others.
+struct StepFailed {
+  StepRef ref;
+  std::string message;
+};
+
+struct JobWarning {
+  std::string text;
+};
+
+enum class JobOutcome {
+  Done,
+  DoneWithFailures,  // some frames failed; they are listed
+  Cancelled,
+  Failed,  // `kind` and `message` tell why
+};
+
+struct JobFinished {
+  JobOutcome outcome = JobOutcome::Done;
+  Error::Kind kind = Error::Kind::Bug;  // of a failed job
+  std::string message;                  // of a failed job
+  std::vector<StepFailed> failed;       // frames
+  std::vector<std::string> notes;       // what was left out and what it would need
+  int computed = 0, reused = 0;         // steps
+  double seconds = 0;
+};
+
+using JobEvent = std::variant<StageStarted, StepProgress, StepFinished, StepFailed, JobWarning, JobFinished>;
+
+}  // namespace beam

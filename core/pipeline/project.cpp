@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/project.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/pipeline/presets.h"
+
+namespace beam {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kDocumentFile = "project.json";
+
+std::string newId() {
+  std::random_device device;
+  std::string id;
+  for (int i = 0; i < 4; ++i) id += fmt::format("{:08x}", device());
+  return id;
+}
+
+// Whether a project can be made there. What a killed attempt to make one left behind does not count.
+bool isFree(const fs::path& folder) {
+  std::error_code failed;
+  if (!fs::exists(folder, failed)) return true;
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "LOCK" && name != "history" && !name.starts_with(".project.json.")) return false;
+  }
+  return !failed;
+}
+
+std::vector<Field> fieldsOfStage(Stage& stage) {
+  FieldList list;
+  stage.parameters(list);
+  return std::move(list.fields);
+}
+
+}  // namespace
+
+bool Project::isProject(const fs::path& folder) {
+  std::error_code failed;
+  return fs::is_regular_file(folder / kDocumentFile, failed);
+}
+
+Project::Project(fs::path folder, ProjectDocument document, std::shared_ptr<const PipelineSetup> setup)
+    : folder_(std::move(folder)),
+      document_(std::move(document)),
+      setup_(std::move(setup)),
+      store_(std::make_shared<ResultStore>(folder_)),
+      inputs_(std::make_shared<InputDigests>()) {}
+
+Project Project::open(const fs::path& folder, std::shared_ptr<const PipelineSetup> setup) {
+  if (!isProject(folder)) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" is no project: it has no project.json; make one with: beam new "
+                            "\"{}\" --capture FOLDER",
+                            folder.string(), folder.string()));
+  }
+  const fs::path file = folder / kDocumentFile;
+  return Project(folder, parseProjectDocument(readTextFile(file), file.string()), std::move(setup));
+}
+
+Project Project::create(const fs::path& folder, const ProjectDocument& document,
+                        std::shared_ptr<const PipelineSetup> setup) {
+  if (!isFree(folder)) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" exists and is not an empty folder; choose another name for the "
+                            "project",
+                            folder.string()));
+  }
+  Project project(folder, document, std::move(setup));
+  if (project.document_.id.empty()) project.document_.id = newId();
+  project.preset();  // refuses unknown ones
+  return project;
+}
+
+std::string Project::name() const {
+  const fs::path normal = (folder_ / "").lexically_normal().parent_path();
+  return normal.extension() == ".beam" ? normal.stem().string() : normal.filename().string();
+}
+
+bool Project::readOnly() const {
+  struct stat info {};
+  // No write bit at all says "leave it alone" also to root, whom the kernel would let through.
+  if (::stat(folder_.c_str(), &info) == 0 && (info.st_mode & 0222) == 0) return true;
+  return ::access(folder_.c_str(), W_OK) != 0;
+}
+
+// --- Settings ---
+
+const std::map<std::string, FieldValue>& Project::preset() const {
+  if (preset_loaded_ != document_.preset) {
+    preset_ = setup_->presets.empty() ? std::map<std::string, FieldValue>{}
+                                      : loadPreset(setup_->presets, document_.preset);
+    preset_loaded_ = document_.preset;
+  }
+  return preset_;
+}
+
+std::unique_ptr<Stage> Project::makeStage(std::string_view stage) const {
+  std::unique_ptr<Stage> made = setup_->stages.make(stage);
+  const std::string prefix = std::string(stage) + ".";
+  for (const auto* values : {&preset(), &document_.settings}) {
+    for (const auto& [key, value] : *values) {
+      if (!key.starts_with(prefix)) continue;
+      FieldSetter setter(key.substr(prefix.size()), value);
+      made->parameters(setter);
+      if (!setter.found) {
+        throw Error(Error::Kind::Data, fmt::format("{} of \"{}\" names {}, which this program does not have",
+                                                   values == &document_.settings ? "a setting" : "the preset",
+                                                   folder_.string(), key));
+      }
+    }
+  }
+  return made;
+}
+
+std::vector<Field> Project::fields() const {
+  std::vector<Field> all;
+  for (const StageInfo& info : setup_->stages.infos()) {
+    for (Field& field : fieldsOfStage(*makeStage(info.id))) {
+      field.info.name = info.id + "." + field.info.name;
+      all.push_back(std::move(field));
+    }
+  }
+  return all;
+}
+
+FieldValue Project::value(std::string_view key) const {
+  std::vector<std::string> names;
+  for (const Field& field : fields()) {
+    if (field.info.name == key) return field.value;
+    names.push_back(field.info.name);
+  }
+  throw Error(Error::Kind::Usage,
+              fmt::format("there is no setting \"{}\"; the nearest is \"{}\"", key, nearestName(key, names)));
+}
+
+FieldValue Project::presetValue(std::string_view key) const {
+  Project plain = *this;
+  plain.document_.settings.clear();
+  return plain.value(key);
+}
+
+void Project::set(std::string_view key, const FieldValue& wanted) {
+  const FieldValue preset_value = presetValue(key);  // refuses unknown keys
+  std::unique_ptr<Stage> stage = setup_->stages.make(stageOf(key));
+  try {
+    FieldSetter setter(stepOf(key), wanted);
+    stage->parameters(setter);
+  } catch (const Error& e) {
+    throw Error(e.kind(), fmt::format("{}.{}", stageOf(key), e.what()));
+  }
+  FieldList list;
+  stage->parameters(list);
+  for (const Field& field : list.fields) {
+    if (field.info.name != stepOf(key)) continue;
+    if (field.value == preset_value) {
+      document_.settings.erase(std::string(key));
+    } else {
+      document_.settings[std::string(key)] = field.value;
+    }
+  }
+}
+
+void Project::reset(std::string_view key) { document_.settings.erase(std::string(key)); }
+
+void Project::setPreset(const std::string& name) {
+  const std::string before = std::exchange(document_.preset, name);
+  try {
+    preset();
+  } catch (...) {
+    document_.preset = before;
+    throw;
+  }
+  // What the new preset says anyway no longer differs.
+  for (const auto& [key, value] : std::map(document_.settings)) set(key, value);
+}
+
+std::vector<std::string> Project::presetNames() const { return presetNamesIn(setup_->presets); }
+
+void Project::setCapture(const fs::path& capture) {
+  document_.capture = referenceTo(capture, folder_);
+  document_.capture_files = describeCapture(capture);
+  forgetCapture();
+}
+
+void Project::setEnvironment(const std::optional<fs::path>& file) {
+  if (file) {
+    document_.environment = referenceTo(*file, folder_);
+  } else {
+    document_.environment.reset();
+  }
+}
+
+void Project::setHoldOut(std::vector<std::string> hold_out) {
+  document_.hold_out = std::move(hold_out);
+  forgetCapture();
+}
+
+void Project::setUp(std::optional<UpAxis> up) {
+  document_.up = up;
+  forgetCapture();
+}
+
+void Project::forgetCapture() { imported_.reset(); }
+
+void Project::save() {
+  std::error_code failed;
+  fs::create_directories(folder_, failed);
+  if (failed) {
+    throw Error(Error::Kind::Storage,
+                fmt::format("cannot make the project folder \"{}\": {}", folder_.string(), failed.message()));
+  }
+  const fs::path file = folder_ / kDocumentFile;
+  if (isProject(folder_) && readTextFile(file) == toJson(document_)) return;
+  if (readOnly()) {
+    throw Error(Error::Kind::Storage,
+                fmt::format("\"{}\" is read-only: the changed settings cannot be saved; make the "
+                            "folder writable or copy it",
+                            folder_.string()));
+  }
+  writeProjectDocument(folder_, document_);
+}
+
+// --- Capture ---
+
+fs::path Project::captureFolder() const {
+  if (std::optional<fs::path> found = resolve(document_.capture, folder_)) return *found;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("the capture of \"{}\" is gone: expected it at \"{}\"; put it back, or name its new place "
+                  "with: beam process FOLDER --out \"{}\"",
+                  folder_.string(), document_.capture.absolute, folder_.string()));
+}
+
+bool Project::isCapture(const fs::path& folder) const {
+  std::error_code failed;
+  const std::optional<fs::path> own = resolve(document_.capture, folder_);
+  if (own && fs::equivalent(*own, folder, failed)) return true;
+  return !document_.capture_files.empty() && describeCapture(folder) == document_.capture_files;
+}
+
+const ImportedCapture& Project::imported() const {
+  if (!imported_) {
+    ImportOptions options;
+    options.up = document_.up;
+    options.hold_out = document_.hold_out;
+    imported_ = std::make_shared<const ImportedCapture>(setup_->open_capture(captureFolder(), options));
+  }
+  return *imported_;
+}
+
+std::optional<fs::path> Project::environmentFile() const {
+  if (!document_.environment) {
+    const std::optional<std::string>& own = capture().environment_file;
+    return own ? std::optional<fs::path>(*own) : std::nullopt;
+  }
+  if (std::optional<fs::path> found = resolve(*document_.environment, folder_)) return found;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("the panorama of \"{}\" is gone: expected it at \"{}\"; put it back or name another with "
+                  "--environment",
+                  folder_.string(), document_.environment->absolute));
+}
+
+// --- Steps ---
+
+std::string Project::blockedReason(std::string_view stage) const {
+  const auto needsEnvironment = [&](const auto& self, const std::string& id) -> bool {
+    const StepInfo& step = setup_->stages.step(id);
+    const bool reads =
+        std::find(step.reads.begin(), step.reads.end(), Reads::Environment) != step.reads.end();
+    return reads ||
+           std::any_of(step.inputs.begin(), step.inputs.end(), [&](const auto& i) { return self(self, i); });
+  };
+  const StageInfo& info = setup_->stages.info(stage);
+  for (const StepInfo& step : info.steps) {
+    if (!needsEnvironment(needsEnvironment, info.id + "." + step.id)) continue;
+    if (environmentFile()) return {};
+    return fmt::format(
+        "{} needs a panorama of the light, which the capture does not have: give one with --environment "
+        "FILE (.exr or .hdr, latitude-longitude)",
+        info.title);
+  }
+  return {};
+}
+
+KeyIngredients Project::ingredients(std::string_view step, FrameIndex frame) const {
+  const StepInfo& info = setup_->stages.step(step);
+  KeyIngredients key{std::string(step), info.version, {}, {}, {}};
+  const std::string stage = stageOf(step);
+  const std::vector<Field> defaults = fieldsOfStage(*setup_->stages.make(stage));
+  const std::vector<Field> in_force = fieldsOfStage(*makeStage(stage));
+  for (std::size_t i = 0; i < in_force.size(); ++i) {
+    if (in_force[i].value == defaults[i].value || !entersKey(in_force[i].info, info.id)) continue;
+    key.parameters[stage + "." + in_force[i].info.name] = toText(in_force[i].value);
+  }
+  for (const Reads reads : info.reads) {
+    switch (reads) {
+      case Reads::Calibration:
+        key.inputs["calibration"] = inputs_->calibration(capture());
+        break;
+      case Reads::Pictures:
+        key.inputs["pictures"] = inputs_->pictures(capture(), frame);
+        break;
+      case Reads::Environment:
+        if (const auto file = environmentFile()) key.inputs["environment"] = inputs_->file(*file);
+        break;
+    }
+  }
+  for (const std::string& input : info.inputs) key.upstream[input] = this->key(input, frame);
+  return key;
+}
+
+Digest Project::key(std::string_view step, FrameIndex frame) const { return keyOf(ingredients(step, frame)); }
+
+StepState Project::state(std::string_view step, FrameIndex frame) const {
+  if (!blockedReason(stageOf(step)).empty()) return StepState::Blocked;
+  const Digest digest = key(step, frame);
+  if (store_->has(digest)) return StepState::Done;
+  if (store_->isLeased(digest)) return StepState::Running;
+  return store_->failure(digest) ? StepState::Failed : StepState::Pending;
+}
+
+StepState Project::stageState(std::string_view stage, FrameIndex frame) const {
+  const StageInfo& info = setup_->stages.info(stage);
+  for (const StepInfo& step : info.steps) {
+    const StepState found = state(info.id + "." + step.id, frame);
+    if (found != StepState::Done) return found;
+  }
+  return StepState::Done;
+}
+
+std::string Project::failureOf(std::string_view step, FrameIndex frame) const {
+  const std::optional<FailureNote> note = store_->failure(key(step, frame));
+  return note ? note->message : std::string();
+}
+
+std::optional<fs::path> Project::result(std::string_view step, FrameIndex frame) const {
+  if (!blockedReason(stageOf(step)).empty()) return std::nullopt;
+  return store_->verified(key(step, frame));
+}
+
+std::optional<ResultRecord> Project::record(std::string_view step, FrameIndex frame) const {
+  if (!blockedReason(stageOf(step)).empty()) return std::nullopt;
+  return store_->record(key(step, frame));
+}
+
+const InputDigests& Project::inputs() const { return *inputs_; }
+
+}  // namespace beam

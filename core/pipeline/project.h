@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Project: one folder Name.beam on disk; which capture, which settings, which results. Copies are independent
+// snapshots over the same folder (the runner works on one); opening never writes.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/fields.h"
+#include "core/base/hash.h"
+#include "core/io/capture_reader.h"
+#include "core/pipeline/input_digests.h"
+#include "core/pipeline/project_document.h"
+#include "core/pipeline/result_key.h"
+#include "core/pipeline/result_store.h"
+#include "core/pipeline/stage_registry.h"
+
+namespace beam {
+
+// What the pipeline is built of; made once by the program.
+struct PipelineSetup {
+  StageRegistry stages;
+  std::filesystem::path presets;  // folder with draft.json, standard.json, paper.json
+  std::function<ImportedCapture(const std::filesystem::path&, const ImportOptions&)> open_capture =
+      openCapture;
+};
+
+enum class StepState {
+  Pending,
+  Running,  // some process holds its lease
+  Failed,   // the last attempt did; failureOf tells why
+  Done,
+  Blocked,  // needs something the project does not have (a panorama)
+};
+
+class Project {
+ public:
+  // Throws Error{Data} when the folder is no project or of a newer format.
+  static Project open(const std::filesystem::path& folder, std::shared_ptr<const PipelineSetup> setup);
+  // A new project in memory; save() makes its folder. Throws Error{Usage} when something is there already.
+  static Project create(const std::filesystem::path& folder, const ProjectDocument& document,
+                        std::shared_ptr<const PipelineSetup> setup);
+  static bool isProject(const std::filesystem::path& folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::string name() const;  // of the folder, without ".beam"
+  const PipelineSetup& setup() const { return *setup_; }
+  // Whether results and settings can be written; opening and looking work without.
+  bool readOnly() const;
+
+  // --- Settings. Changes stay in memory until save(). ---
+  // Every field of every stage under its full name ("surface.iterations") with its value in force, in order.
+  std::vector<Field> fields() const;
+  FieldValue value(std::string_view key) const;
+  FieldValue presetValue(std::string_view key) const;  // what holds when the user says nothing
+  // Throws Error{Usage}: unknown key (names the nearest), wrong type, out of range.
+  void set(std::string_view key, const FieldValue& value);
+  void reset(std::string_view key);
+  void setPreset(const std::string& name);  // Error{Usage} when there is none of that name
+  std::vector<std::string> presetNames() const;
+  const ProjectDocument& document() const { return document_; }
+  void setCapture(const std::filesystem::path& capture);
+  void setEnvironment(const std::optional<std::filesystem::path>& file);
+  void setHoldOut(std::vector<std::string> hold_out);
+  void setUp(std::optional<UpAxis> up);
+  // Writes project.json when it differs from what is on disk; nothing else ever does. Throws Error{Locked} or
+  // Error{Storage}.
+  void save();
+
+  // --- Capture, read when first asked for and kept. ---
+  const ImportedCapture& imported() const;
+  const CaptureSet& capture() const { return imported().set; }
+  std::filesystem::path captureFolder() const;
+  // Whether `folder` holds the capture of this project: the same folder, or one described by the same bytes.
+  bool isCapture(const std::filesystem::path& folder) const;
+  // The panorama in force: the project's own, else the capture's.
+  std::optional<std::filesystem::path> environmentFile() const;
+
+  // --- Steps. `step` is a full id; `frame` is ignored for steps that serve the whole project. ---
+  // Why a stage cannot run ("" when it can): "needs a panorama: ...".
+  std::string blockedReason(std::string_view stage) const;
+  KeyIngredients ingredients(std::string_view step, FrameIndex frame) const;
+  Digest key(std::string_view step, FrameIndex frame) const;
+  StepState state(std::string_view step, FrameIndex frame) const;
+  // Of a whole stage for a frame: the least finished of its steps.
+  StepState stageState(std::string_view stage, FrameIndex frame) const;
+  std::string failureOf(std::string_view step, FrameIndex frame) const;  // message; empty: none
+  // Folder of the finished result, every byte verified (once a process and version of the file); empty when
+  // there is none. A damaged one is set aside with a warning and counts as none.
+  std::optional<std::filesystem::path> result(std::string_view step, FrameIndex frame) const;
+  std::optional<ResultRecord> record(std::string_view step, FrameIndex frame) const;
+
+  const ResultStore& store() const { return *store_; }
+  // A stage with the settings in force.
+  std::unique_ptr<Stage> makeStage(std::string_view stage) const;
+  const InputDigests& inputs() const;
+
+ private:
+  Project(std::filesystem::path folder, ProjectDocument document, std::shared_ptr<const PipelineSetup> setup);
+  void forgetCapture();
+  const std::map<std::string, FieldValue>& preset() const;
+
+  std::filesystem::path folder_;
+  ProjectDocument document_;
+  std::shared_ptr<const PipelineSetup> setup_;
+  std::shared_ptr<const ResultStore> store_;
+  mutable std::map<std::string, FieldValue> preset_;
+  mutable std::string preset_loaded_;
+  mutable std::shared_ptr<const ImportedCapture> imported_;
+  mutable std::shared_ptr<const InputDigests> inputs_;
+};
+
+}  // namespace beam

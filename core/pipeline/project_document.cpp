@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/project_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/base/fields_json.h"
+#include "core/io/file.h"
+#include "core/pipeline/file_digest.h"
+#include "core/pipeline/file_lock.h"
+
+namespace beam {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kMajor = 1, kMinor = 0;
+constexpr std::size_t kKept = 20;
+
+Json toJsonValue(const FileReference& reference) {
+  return {{"relative", reference.relative}, {"absolute", reference.absolute}};
+}
+
+FileReference parseReference(const Json& j) {
+  return {j.at("relative").get<std::string>(), j.at("absolute").get<std::string>()};
+}
+
+void readCapture(const Json& j, ProjectDocument& document) {
+  document.capture = parseReference(j);
+  for (const Json& f : j.at("files")) {
+    document.capture_files.push_back({f.at("name").get<std::string>(), f.at("bytes").get<std::uint64_t>(),
+                                      parseDigest(f.at("xxh3_128").get<std::string>())});
+  }
+}
+
+void checkFormat(const Json& j, std::string_view where) {
+  const int major = j.at("format").at("major").get<int>();
+  if (major > kMajor) {
+    throw Error(
+        Error::Kind::Data,
+        fmt::format("\"{}\" has project format {}.x, this program reads up to {}.x; open it with a newer "
+                    "BEAM Studio",
+                    where, major, kMajor));
+  }
+}
+
+fs::path nextHistoryFile(const fs::path& history) {
+  std::vector<fs::path> kept;
+  for (const auto& entry : fs::directory_iterator(history)) {
+    if (entry.path().extension() == ".json") kept.push_back(entry.path());
+  }
+  std::sort(kept.begin(), kept.end());
+  const int last = kept.empty() ? 0 : std::atoi(kept.back().stem().c_str());
+  for (std::size_t i = 0; i + kKept <= kept.size(); ++i) fs::remove(kept[i]);
+  return history / fmt::format("{:08}.json", last + 1);
+}
+
+FileLock lockProject(const fs::path& project) {
+  using namespace std::chrono_literals;
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    if (std::optional<FileLock> lock = FileLock::tryAcquire(project / "LOCK")) return std::move(*lock);
+    std::this_thread::sleep_for(50ms);
+  }
+  throw Error(Error::Kind::Locked,
+              fmt::format("\"{}\" is being written by another program ({}); try again when it is "
+                          "done",
+                          project.string(), FileLock::holderOf(project / "LOCK")));
+}
+
+}  // namespace
+
+std::string toText(UpAxis up) {
+  switch (up) {
+    case UpAxis::PlusY:
+      return "+Y";
+    case UpAxis::PlusZ:
+      return "+Z";
+    case UpAxis::MinusY:
+      return "-Y";
+  }
+  return "+Y";
+}
+
+UpAxis parseUpAxis(std::string_view text) {
+  if (text == "+Y" || text == "Y" || text == "y") return UpAxis::PlusY;
+  if (text == "+Z" || text == "Z" || text == "z") return UpAxis::PlusZ;
+  if (text == "-Y" || text == "-y") return UpAxis::MinusY;
+  throw Error(Error::Kind::Usage, fmt::format("up axis: expected +Y, +Z or -Y, found \"{}\"", text));
+}
+
+FileReference referenceTo(const fs::path& target, const fs::path& project) {
+  std::error_code failed;
+  const fs::path absolute = fs::weakly_canonical(fs::absolute(target), failed);
+  const fs::path base = fs::weakly_canonical(fs::absolute(project), failed);
+  return {absolute.lexically_relative(base).generic_string(), absolute.generic_string()};
+}
+
+std::optional<fs::path> resolve(const FileReference& reference, const fs::path& project) {
+  std::error_code failed;
+  if (!reference.relative.empty()) {
+    const fs::path base = fs::weakly_canonical(fs::absolute(project), failed);
+    const fs::path beside = (base / reference.relative).lexically_normal();
+    if (fs::exists(beside, failed)) return beside;
+  }
+  if (!reference.absolute.empty() && fs::exists(reference.absolute, failed))
+    return fs::path(reference.absolute);
+  return std::nullopt;
+}
+
+std::vector<DescriptionFile> describeCapture(const fs::path& capture) {
+  std::vector<DescriptionFile> found;
+  for (const char* folder : {"", "sparse", "sparse/0"}) {
+    for (const char* name :
+         {"dataset.json", "transforms.json", "cameras.bin", "cameras.txt", "images.bin", "images.txt"}) {
+      const fs::path file = capture / folder / name;
+      std::error_code failed;
+      if (!fs::is_regular_file(file, failed)) continue;
+      found.push_back({(fs::path(folder) / name).generic_string(), fs::file_size(file), digestOfFile(file)});
+    }
+  }
+  return found;
+}
+
+std::string toJson(const ProjectDocument& document) {
+  Json j;
+  j["format"] = {{"major", kMajor}, {"minor", kMinor}};
+  j["id"] = document.id;
+  j["capture"] = toJsonValue(document.capture);
+  j["capture"]["files"] = Json::array();
+  for (const DescriptionFile& f : document.capture_files) {
+    j["capture"]["files"].push_back({{"name", f.name}, {"bytes", f.bytes}, {"xxh3_128", f.digest.hex()}});
+  }
+  if (document.environment) j["environment"] = toJsonValue(*document.environment);
+  j["hold_out"] = document.hold_out;
+  if (document.up) j["up"] = toText(*document.up);
+  j["preset"] = document.preset;
+  j["settings"] = Json::object();
+  for (const auto& [key, value] : document.settings) {
+    std::visit([&, &k = key](const auto& v) { j["settings"][k] = v; }, value);
+  }
+  const Json unknown = Json::parse(document.unknown);
+  for (const auto& [key, value] : unknown.items()) j[key] = value;
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+ProjectDocument parseProjectDocument(std::string_view json, std::string_view where) {
+  try {
+    Json j = Json::parse(json);
+    checkFormat(j, where);
+    ProjectDocument document;
+    document.id = j.at("id").get<std::string>();
+    readCapture(j.at("capture"), document);
+    if (j.contains("environment")) document.environment = parseReference(j["environment"]);
+    if (j.contains("hold_out")) document.hold_out = j["hold_out"].get<std::vector<std::string>>();
+    if (j.contains("up")) document.up = parseUpAxis(j["up"].get<std::string>());
+    document.preset = j.at("preset").get<std::string>();
+    for (const auto& [key, value] : j.at("settings").items())
+      document.settings[key] = parseFieldValue(value.dump());
+    for (const char* known :
+         {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings"}) {
+      j.erase(known);
+    }
+    document.unknown = j.dump();
+    return document;
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" cannot be understood: {}; an earlier version of it is in "
+                            "history/",
+                            where, e.what()));
+  }
+}
+
+void writeProjectDocument(const fs::path& project, const ProjectDocument& document) {
+  const FileLock lock = lockProject(project);
+  const std::string text = toJson(document);
+  try {
+    fs::create_directories(project / "history");
+    writeFileAtomically(nextHistoryFile(project / "history"), text);
+  } catch (const fs::filesystem_error& e) {
+    throw Error(Error::Kind::Storage, e.what());
+  }
+  writeFileAtomically(project / "project.json", text);
+}
+
+}  // namespace beam

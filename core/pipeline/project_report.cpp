@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/project_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace beam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json toJsonValue(const FieldValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+std::vector<Field> defaultsOf(const StageRegistry& stages, const StageInfo& info) {
+  FieldList list;
+  stages.make(info.id)->parameters(list);
+  for (Field& field : list.fields) field.info.name = info.id + "." + field.info.name;
+  return std::move(list.fields);
+}
+
+Json toJsonValue(const Field& field) {
+  const FieldInfo& info = field.info;
+  Json j = {
+      {"key", info.name}, {"label", info.label}, {"help", info.help}, {"default", toJsonValue(field.value)}};
+  if (std::isfinite(info.min)) j["min"] = info.min;
+  if (std::isfinite(info.max)) j["max"] = info.max;
+  if (!info.unit.empty()) j["unit"] = info.unit;
+  if (!info.choices.empty()) j["choices"] = info.choices;
+  if (info.advanced) j["advanced"] = true;
+  if (info.effect == Effect::SpeedOnly) j["speed_only"] = true;
+  return j;
+}
+
+std::string rangeText(const FieldInfo& info) {
+  if (!info.choices.empty()) return fmt::format(" ({})", fmt::join(info.choices, ", "));
+  if (!std::isfinite(info.min) || !std::isfinite(info.max)) return {};
+  return fmt::format(" ({} to {}{}{})", info.min, info.max, info.unit.empty() ? "" : " ", info.unit);
+}
+
+std::vector<FrameIndex> framesOf(const Project& project, const StepInfo& step) {
+  const std::size_t count = step.per_frame ? project.capture().frames.size() : 1;
+  std::vector<FrameIndex> frames;
+  for (std::size_t i = 0; i < count; ++i) frames.push_back(FrameIndex{static_cast<std::int32_t>(i)});
+  return frames;
+}
+
+std::string frameName(const Project& project, FrameIndex frame) {
+  return project.capture().frames[static_cast<std::size_t>(frame.value)];
+}
+
+// "done 000002, 000006; pending 8 more": the finished and failed by name, what is only pending as a count.
+std::string stepText(const Project& project, const std::string& id, const StepInfo& step) {
+  if (!step.per_frame) return toText(project.state(id, FrameIndex{}));
+  std::map<StepState, std::vector<std::string>> by_state;
+  for (const FrameIndex frame : framesOf(project, step)) {
+    by_state[project.state(id, frame)].push_back(frameName(project, frame));
+  }
+  std::string text;
+  for (const auto& [state, names] : by_state) {
+    const bool all = by_state.size() == 1;
+    const bool counted = all || state == StepState::Pending || names.size() > 12;
+    text += fmt::format("{}{} {}", text.empty() ? "" : "; ", toText(state),
+                        all       ? std::string("(all frames)")
+                        : counted ? fmt::format("({} frames)", names.size())
+                                  : fmt::format("{}", fmt::join(names, ", ")));
+  }
+  return text;
+}
+
+std::string failuresText(const Project& project, const std::string& id, const StepInfo& step) {
+  std::string text;
+  for (const FrameIndex frame : framesOf(project, step)) {
+    if (project.state(id, frame) != StepState::Failed) continue;
+    text += fmt::format("    frame {}: {}\n", frameName(project, frame), project.failureOf(id, frame));
+  }
+  return text;
+}
+
+Json stepJson(const Project& project, const std::string& id, const StepInfo& step) {
+  Json j = {{"id", id}, {"title", step.title}};
+  if (!step.per_frame) {
+    j["state"] = toText(project.state(id, FrameIndex{}));
+    j["key"] = project.key(id, FrameIndex{}).hex();
+    return j;
+  }
+  j["frames"] = Json::object();
+  for (const FrameIndex frame : framesOf(project, step)) {
+    const StepState state = project.state(id, frame);
+    Json f = {{"state", toText(state)}, {"key", project.key(id, frame).hex()}};
+    if (state == StepState::Failed) f["message"] = project.failureOf(id, frame);
+    if (state == StepState::Done) {
+      if (const auto record = project.record(id, frame)) f["seconds"] = record->seconds;
+    }
+    j["frames"][frameName(project, frame)] = std::move(f);
+  }
+  return j;
+}
+
+}  // namespace
+
+const char* toText(StepState state) {
+  switch (state) {
+    case StepState::Pending:
+      return "pending";
+    case StepState::Running:
+      return "running";
+    case StepState::Failed:
+      return "failed";
+    case StepState::Done:
+      return "done";
+    case StepState::Blocked:
+      return "blocked";
+  }
+  return "";
+}
+
+std::string statusText(const Project& project) {
+  std::string text =
+      fmt::format("project {}{}\ncapture {} ({} cameras, {} frames)\npreset {}\n", project.name(),
+                  project.readOnly() ? " (read-only)" : "", project.captureFolder().string(),
+                  project.capture().views.size(), project.capture().frames.size(), project.document().preset);
+  for (const auto& [key, value] : project.document().settings)
+    text += fmt::format("  {} = {}\n", key, toText(value));
+  for (const StageInfo& info : project.setup().stages.infos()) {
+    text += fmt::format("{}\n", info.title);
+    if (const std::string why = project.blockedReason(info.id); !why.empty()) {
+      text += fmt::format("  blocked: {}\n", why);
+      continue;
+    }
+    for (const StepInfo& step : info.steps) {
+      const std::string id = info.id + "." + step.id;
+      text += fmt::format("  {:<18} {}\n", id, stepText(project, id, step)) + failuresText(project, id, step);
+    }
+  }
+  text.pop_back();
+  return text;
+}
+
+std::string statusJson(const Project& project) {
+  Json j = {{"project", project.name()},
+            {"folder", project.folder().string()},
+            {"read_only", project.readOnly()},
+            {"capture", project.captureFolder().string()},
+            {"preset", project.document().preset}};
+  j["settings"] = Json::object();
+  for (const auto& [key, value] : project.document().settings) j["settings"][key] = toJsonValue(value);
+  j["frames"] = project.capture().frames;
+  j["stages"] = Json::array();
+  for (const StageInfo& info : project.setup().stages.infos()) {
+    Json stage = {{"id", info.id}, {"title", info.title}};
+    if (const std::string why = project.blockedReason(info.id); !why.empty()) stage["blocked"] = why;
+    stage["steps"] = Json::array();
+    for (const StepInfo& step : info.steps)
+      stage["steps"].push_back(stepJson(project, info.id + "." + step.id, step));
+    j["stages"].push_back(std::move(stage));
+  }
+  return j.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string stagesText(const StageRegistry& stages) {
+  std::string text;
+  for (const StageInfo& info : stages.infos()) {
+    text += fmt::format("{}: {} {}\n", info.id, info.title, info.summary);
+    for (const StepInfo& step : info.steps) {
+      text += fmt::format("  step {}.{}: {}{}\n", info.id, step.id, step.title,
+                          step.source.empty() ? "" : " (" + step.source + ")");
+    }
+    for (const Field& field : defaultsOf(stages, info)) {
+      text += fmt::format("  {} = {}{}: {}\n", field.info.name, toText(field.value), rangeText(field.info),
+                          field.info.help);
+    }
+  }
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+std::string stagesJson(const StageRegistry& stages) {
+  Json j = Json::array();
+  for (const StageInfo& info : stages.infos()) {
+    Json stage = {{"id", info.id}, {"title", info.title}, {"summary", info.summary}};
+    stage["steps"] = Json::array();
+    for (const StepInfo& step : info.steps) {
+      stage["steps"].push_back({{"id", info.id + "." + step.id},
+                                {"title", step.title},
+                                {"source", step.source},
+                                {"version", step.version},
+                                {"per_frame", step.per_frame},
+                                {"inputs", step.inputs}});
+    }
+    stage["settings"] = Json::array();
+    for (const Field& field : defaultsOf(stages, info)) stage["settings"].push_back(toJsonValue(field));
+    j.push_back(std::move(stage));
+  }
+  return j.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace beam

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/result_record.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+
+namespace beam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json digests(const std::map<std::string, Digest>& named) {
+  Json j = Json::object();
+  for (const auto& [name, digest] : named) j[name] = digest.hex();
+  return j;
+}
+
+std::map<std::string, Digest> parseDigests(const Json& j) {
+  std::map<std::string, Digest> named;
+  for (const auto& [name, hex] : j.items()) named[name] = parseDigest(hex.get<std::string>());
+  return named;
+}
+
+template <class Body>
+auto parsed(std::string_view what, std::string_view json, Body&& body) {
+  try {
+    return body(Json::parse(json));
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(Error::Kind::Data, fmt::format("{} cannot be understood: {}", what, e.what()));
+  }
+}
+
+}  // namespace
+
+std::string toJson(const ResultRecord& r) {
+  Json j;
+  j["format"] = 1;
+  j["key"] = r.key.hex();
+  j["step"] = r.ingredients.step;
+  j["version"] = r.ingredients.version;
+  j["parameters"] = r.ingredients.parameters;
+  j["inputs"] = digests(r.ingredients.inputs);
+  j["upstream"] = digests(r.ingredients.upstream);
+  j["frame"] = r.frame;
+  j["files"] = Json::object();
+  for (const auto& [name, entry] : r.files) {
+    j["files"][name] = {{"bytes", entry.bytes}, {"xxh3_128", entry.digest.hex()}};
+  }
+  j["program_version"] = r.program_version;
+  j["device"] = r.device;
+  j["threads"] = r.threads;
+  j["seconds"] = r.seconds;
+  j["peak_memory_bytes"] = r.peak_memory_bytes;
+  j["warnings"] = r.warnings;
+  j["scores"] = r.scores;
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+ResultRecord parseResultRecord(std::string_view json) {
+  return parsed("result.json", json, [](const Json& j) {
+    ResultRecord r;
+    r.key = parseDigest(j.at("key").get<std::string>());
+    r.ingredients.step = j.at("step").get<std::string>();
+    r.ingredients.version = j.at("version").get<int>();
+    r.ingredients.parameters = j.at("parameters").get<std::map<std::string, std::string>>();
+    r.ingredients.inputs = parseDigests(j.at("inputs"));
+    r.ingredients.upstream = parseDigests(j.at("upstream"));
+    r.frame = j.at("frame").get<std::string>();
+    for (const auto& [name, entry] : j.at("files").items()) {
+      r.files[name] = {entry.at("bytes").get<std::uint64_t>(),
+                       parseDigest(entry.at("xxh3_128").get<std::string>())};
+    }
+    r.program_version = j.at("program_version").get<std::string>();
+    r.device = j.at("device").get<std::string>();
+    r.threads = j.at("threads").get<int>();
+    r.seconds = j.at("seconds").get<double>();
+    r.peak_memory_bytes = j.at("peak_memory_bytes").get<std::uint64_t>();
+    r.warnings = j.at("warnings").get<std::vector<std::string>>();
+    r.scores = j.at("scores").get<std::map<std::string, double>>();
+    return r;
+  });
+}
+
+std::string toJson(const FailureNote& note) {
+  const Json j = {{"step", note.step}, {"frame", note.frame}, {"message", note.message}};
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+FailureNote parseFailureNote(std::string_view json) {
+  return parsed("failure note", json, [](const Json& j) {
+    return FailureNote{j.at("step").get<std::string>(), j.at("frame").get<std::string>(),
+                       j.at("message").get<std::string>()};
+  });
+}
+
+}  // namespace beam

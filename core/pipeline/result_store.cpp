@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/result_store.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/io/file.h"
+#include "core/pipeline/file_digest.h"
+
+namespace beam {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kRecordFile = "result.json";
+
+// Runs `body` with errors of the file system turned into the house's own.
+template <class Body>
+auto onDisk(Body&& body) {
+  try {
+    return body();
+  } catch (const fs::filesystem_error& e) {
+    throw Error(Error::Kind::Storage, e.what());
+  }
+}
+
+void makeFolder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) {
+    throw Error(Error::Kind::Storage,
+                fmt::format("cannot make the folder \"{}\": {}", folder.string(), failed.message()));
+  }
+}
+
+std::vector<std::string> filesBelow(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(folder).generic_string());
+  }
+  return names;
+}
+
+// Everything in the folder to the disk, and what it is into the record.
+void sealFiles(const fs::path& folder, ResultRecord& record) {
+  record.files.clear();
+  for (const std::string& name : filesBelow(folder)) {
+    const fs::path file = folder / name;
+    syncPath(file);
+    record.files[name] = {fs::file_size(file), digestOfFile(file)};
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory()) syncPath(entry.path());
+  }
+  writeFileAtomically(folder / kRecordFile, toJson(record));
+}
+
+std::string stampOf(const fs::path& folder, const ResultRecord& record) {
+  std::string stamp = fileStamp(folder / kRecordFile);
+  for (const auto& [name, entry] : record.files) stamp.append(1, '|').append(fileStamp(folder / name));
+  return stamp;
+}
+
+}  // namespace
+
+fs::path ResultStore::folderOf(const Digest& key) const { return project_ / "results" / key.hex(); }
+
+std::optional<ResultRecord> ResultStore::record(const Digest& key) const {
+  const fs::path file = folderOf(key) / kRecordFile;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  try {
+    ResultRecord record = parseResultRecord(readTextFile(file));
+    if (record.key == key) return record;
+  } catch (const Error&) {
+    // Unreadable means not finished; `verified` says so aloud and sets it aside.
+  }
+  return std::nullopt;
+}
+
+bool ResultStore::has(const Digest& key) const {
+  const std::optional<ResultRecord> found = record(key);
+  if (!found) return false;
+  for (const auto& [name, entry] : found->files) {
+    std::error_code failed;
+    if (fs::file_size(folderOf(key) / name, failed) != entry.bytes || failed) return false;
+  }
+  return true;
+}
+
+std::string ResultStore::findDamage(const Digest& key, const ResultRecord& record) const {
+  for (const auto& [name, entry] : record.files) {
+    const fs::path file = folderOf(key) / name;
+    std::error_code failed;
+    const std::uint64_t bytes = fs::file_size(file, failed);
+    if (failed) return fmt::format("{} is missing", name);
+    if (bytes != entry.bytes) return fmt::format("{}: expected {} bytes, found {}", name, entry.bytes, bytes);
+    if (const Digest found = digestOfFile(file); found != entry.digest) {
+      return fmt::format("{}: expected digest {}, found {}", name, entry.digest.hex(), found.hex());
+    }
+  }
+  return {};
+}
+
+std::optional<fs::path> ResultStore::verified(const Digest& key) const {
+  const fs::path folder = folderOf(key);
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) return std::nullopt;
+  const std::optional<ResultRecord> found = record(key);
+  if (!found) {
+    quarantine(key, "result.json is missing or cannot be understood");
+    return std::nullopt;
+  }
+  const std::string stamp = stampOf(folder, *found);
+  {
+    std::lock_guard lock(mutex_);
+    if (const auto known = good_.find(key); known != good_.end() && known->second == stamp) return folder;
+  }
+  if (const std::string damage = findDamage(key, *found); !damage.empty()) {
+    quarantine(key, damage);
+    return std::nullopt;
+  }
+  std::lock_guard lock(mutex_);
+  good_[key] = stamp;
+  return folder;
+}
+
+void ResultStore::quarantine(const Digest& key, const std::string& reason) const {
+  const fs::path folder = folderOf(key);
+  std::string what = "it is set aside in quarantine/ and will be computed again";
+  try {
+    makeFolder(project_ / "quarantine");
+    fs::path aside;
+    int n = 0;
+    do aside = project_ / "quarantine" / fmt::format("{}.{}", key.hex(), n++);
+    while (fs::exists(aside));
+    fs::rename(folder, aside);
+    syncPath(project_ / "results");
+  } catch (const std::exception&) {
+    what = "the project cannot be written, so it stays where it is and is not used";
+  }
+  logWarning("\"{}\" is damaged: {}; {}", folder.string(), reason, what);
+}
+
+std::optional<FileLock> ResultStore::tryLease(const Digest& key) const {
+  makeFolder(project_ / "leases");
+  std::optional<FileLock> lease = FileLock::tryAcquire(project_ / "leases" / key.hex());
+  if (lease) lease->removeFileAtRelease();
+  return lease;
+}
+
+bool ResultStore::isLeased(const Digest& key) const {
+  return FileLock::isHeld(project_ / "leases" / key.hex());
+}
+
+void ResultStore::publish(const Digest& key, ResultRecord record, const Build& build) const {
+  const fs::path results = project_ / "results";
+  makeFolder(results);
+  const fs::path temporary = results / fmt::format(".{}.{}.tmp", key.hex(), ::getpid());
+  onDisk([&] { fs::remove_all(temporary); });
+  makeFolder(temporary);
+  try {
+    record.key = key;
+    build(temporary, record);
+    onDisk([&] { sealFiles(temporary, record); });
+    const fs::path target = folderOf(key);
+    if (::rename(temporary.c_str(), target.c_str()) != 0) {
+      if (errno != EEXIST && errno != ENOTEMPTY) {
+        throw Error(Error::Kind::Storage, fmt::format("cannot rename \"{}\" into place: {}",
+                                                      temporary.string(), std::strerror(errno)));
+      }
+      // Somebody without a lease was faster: theirs stands if it is whole, and `verified` moves it away if
+      // not.
+      if (!verified(key)) onDisk([&] { fs::rename(temporary, target); });
+    }
+    syncPath(results);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(temporary, ignored);
+    throw;
+  }
+  std::error_code ignored;
+  fs::remove_all(temporary, ignored);
+}
+
+void ResultStore::removeStale() const {
+  std::error_code failed;
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(project_ / "results", failed)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() > 38 && name.front() == '.' && name.ends_with(".tmp")) found.push_back(entry.path());
+  }
+  for (const fs::path& folder : found) {
+    // The builder of a folder holds the lease of its key; a lease that can be had has no builder.
+    const std::optional<FileLock> lease = tryLease(parseDigest(folder.filename().string().substr(1, 32)));
+    if (lease) onDisk([&] { fs::remove_all(folder); });
+  }
+}
+
+void ResultStore::noteFailure(const Digest& key, const FailureNote& note) const {
+  makeFolder(project_ / "failures");
+  writeFileAtomically(project_ / "failures" / (key.hex() + ".json"), toJson(note));
+}
+
+void ResultStore::clearFailure(const Digest& key) const {
+  std::error_code ignored;
+  fs::remove(project_ / "failures" / (key.hex() + ".json"), ignored);
+}
+
+std::optional<FailureNote> ResultStore::failure(const Digest& key) const {
+  const fs::path file = project_ / "failures" / (key.hex() + ".json");
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  try {
+    return parseFailureNote(readTextFile(file));
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace beam

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The folder of immutable results: published whole or not at all, verified when read, never overwritten
+// (reliability 3.3). Safe to use from several threads and processes.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/base/hash.h"
+#include "core/pipeline/file_lock.h"
+#include "core/pipeline/result_record.h"
+
+namespace beam {
+
+class ResultStore {
+ public:
+  explicit ResultStore(std::filesystem::path project) : project_(std::move(project)) {}
+
+  std::filesystem::path folderOf(const Digest& key) const;
+
+  // Whether result.json is there and every file has its size; reads no file's bytes.
+  bool has(const Digest& key) const;
+  std::optional<ResultRecord> record(const Digest& key) const;
+  // Folder of a result whose every byte was verified by this process; empty when there is none. A damaged one
+  // is moved to quarantine/ (where the project can be written) with a warning and counts as none.
+  std::optional<std::filesystem::path> verified(const Digest& key) const;
+
+  // Who computes `key` holds its lease. Empty when somebody else does.
+  std::optional<FileLock> tryLease(const Digest& key) const;
+  bool isLeased(const Digest& key) const;
+
+  // Lets `build` fill a folder and makes it the result: files synced and hashed, `record` completed with them
+  // and written last, folder renamed, results/ synced. After it returns, the result survives anything. The
+  // caller holds the lease. Whatever build throws leaves nothing behind.
+  using Build = std::function<void(const std::filesystem::path& folder, ResultRecord& record)>;
+  void publish(const Digest& key, ResultRecord record, const Build& build) const;
+
+  // Removes half-built folders that no living process works on.
+  void removeStale() const;
+
+  void noteFailure(const Digest& key, const FailureNote& note) const;
+  void clearFailure(const Digest& key) const;
+  std::optional<FailureNote> failure(const Digest& key) const;
+
+ private:
+  std::string findDamage(const Digest& key, const ResultRecord& record) const;
+  void quarantine(const Digest& key, const std::string& reason) const;
+
+  std::filesystem::path project_;
+  mutable std::mutex mutex_;
+  mutable std::map<Digest, std::string> good_;  // key -> stamp of the files as they were when verified
+};
+
+}  // namespace beam

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/runner.h"
+
+#include "core/pipeline/job.h"
+#include "core/render/device.h"
+
+namespace beam {
+
+Runner::~Runner() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Runner::start(Project project, RunRequest request, std::shared_ptr<ComputeDevice> device) {
+  if (running_) throw Error(Error::Kind::Bug, "a run was started while another one is going on");
+  if (thread_.joinable()) thread_.join();
+  running_ = true;
+  preview_.publish(nullptr);
+  thread_ = std::jthread([this, project = std::move(project), request = std::move(request),
+                          device = std::move(device)](std::stop_token stop) {
+    JobFinished finished;
+    {
+      Job job(
+          project, *device, stop, [this](JobEvent event) { events_.push(std::move(event)); }, preview_);
+      finished = job.run(request);
+    }
+    running_ = false;
+    events_.push(std::move(finished));
+  });
+}
+
+void Runner::requestStop() { thread_.request_stop(); }
+
+}  // namespace beam

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runner: one job, one thread, a stream of events. The command line and the studio drive the same class:
+// start, read events until JobFinished, look at the preview when drawing.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/base/slot.h"
+#include "core/pipeline/event_queue.h"
+#include "core/pipeline/job_event.h"
+#include "core/pipeline/project.h"
+#include "core/pipeline/run_plan.h"
+#include "core/scene/gaussian_cloud.h"
+
+namespace beam {
+
+class Runner {
+ public:
+  Runner() = default;
+  ~Runner();  // requests a stop and waits
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+
+  // Works on a snapshot: later changes of `project` do not reach this run. One run at a time: throws
+  // Error{Bug} while one is going on. Whatever goes wrong inside arrives as JobFinished, the last event of a
+  // run.
+  void start(Project project, RunRequest request, std::shared_ptr<ComputeDevice> device);
+  void requestStop();
+  // From start until JobFinished was pushed.
+  bool running() const { return running_; }
+
+  std::optional<JobEvent> tryPop() { return events_.tryPop(); }
+  std::optional<JobEvent> waitPop(std::chrono::milliseconds patience) { return events_.waitPop(patience); }
+  // The newest Gaussians of the step at work; empty before the first.
+  const Slot<GaussianCloud>& preview() const { return preview_; }
+
+ private:
+  EventQueue<JobEvent> events_;
+  Slot<GaussianCloud> preview_;
+  std::atomic<bool> running_{false};
+  std::jthread thread_;
+};
+
+}  // namespace beam

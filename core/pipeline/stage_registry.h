@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stages of this program in pipeline order. A stage object holds its own options, so everyone makes a
+// fresh one.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/pipeline/stage.h"
+
+namespace beam {
+
+class StageRegistry {
+ public:
+  using Maker = std::function<std::unique_ptr<Stage>()>;
+  // Throws Error{Bug} when the id is taken or a step names an input that does not stand before it.
+  void add(Maker maker);
+  // In order of adding.
+  const std::vector<StageInfo>& infos() const { return infos_; }
+  // Throws Error{Usage} that names the nearest stage.
+  std::unique_ptr<Stage> make(std::string_view stage) const;
+  const StageInfo& info(std::string_view stage) const;
+  // `step`: full id. Throws Error{Usage} likewise.
+  const StepInfo& step(std::string_view step) const;
+
+ private:
+  std::size_t indexOf(std::string_view stage) const;
+
+  std::vector<StageInfo> infos_;
+  std::vector<Maker> makers_;
+};
+
+// "surface.fit" -> "surface"; "fit".
+std::string stageOf(std::string_view step);
+std::string stepOf(std::string_view step);
+
+}  // namespace beam

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/sample/make_sample.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/rng.h"
+#include "core/io/file.h"
+#include "core/io/image_file.h"
+#include "core/io/mesh_ply.h"
+#include "core/math/color.h"
+#include "core/sample/look.h"
+#include "core/sample/path_tracer.h"
+#include "core/sample/sample_descriptions.h"
+#include "core/scene/capture.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFramesPerSecond = 30;
+constexpr float kMeshCell_m = 0.007f;
+constexpr int kTruthSamples = 2;  // times the photographs' samples
+constexpr std::size_t kSeedPoints = 6000;
+
+Camera lookingAt(dvec3 position, dvec3 target, const SampleOptions& o) {
+  const dvec3 forward = glm::normalize(target - position),
+              right = glm::normalize(glm::cross(forward, dvec3(0, 0, 1)));
+  const dvec3 down = glm::cross(forward, right);
+  const dmat3 capture_from_camera(right, down, forward);
+  Camera c;
+  c.width = o.width;
+  c.height = o.height;
+  const double focal = 1.3 * o.height;
+  c.intrinsics = {focal, focal, 0.5 * o.width, 0.5 * o.height};
+  c.camera_from_world.rotation = glm::normalize(glm::quat_cast(glm::transpose(capture_from_camera)));
+  c.camera_from_world.translation_m = -(c.camera_from_world.rotation * position);
+  return c;
+}
+
+// Three rings; test cameras stand between them.
+std::vector<SampleCamera> rig(const SampleOptions& o) {
+  std::vector<SampleCamera> cameras;
+  const dvec3 target(0, -0.05, 0.88);
+  const auto add = [&](const std::string& name, bool test, double azimuth, double elevation) {
+    const double r = 2.85, c = std::cos(elevation);
+    const dvec3 position =
+        target + r * dvec3(c * std::sin(azimuth), -c * std::cos(azimuth), std::sin(elevation));
+    cameras.push_back({name, test, lookingAt(position, target, o)});
+  };
+  const double tau = 2 * 3.14159265358979;
+  constexpr double kRings[3] = {glm::radians(8.0), glm::radians(38.0), glm::radians(-14.0)};
+  for (int i = 0; i < o.cameras; ++i) {
+    add(fmt::format("cam{:02}", i), false, tau * (i + 0.25 * (i % 3)) / o.cameras, kRings[i % 3]);
+  }
+  for (int i = 0; i < o.test_cameras; ++i) {
+    add(fmt::format("test{:02}", i), true, tau * (i + 0.37) / std::max(1, o.test_cameras),
+        kRings[i % 2] * 0.6 + 0.15);
+  }
+  return cameras;
+}
+
+// The camera as the house sees it.
+Camera inWorld(Camera c, const dmat3& world_from_capture) {
+  const dquat turn = glm::conjugate(glm::normalize(glm::quat_cast(world_from_capture)));
+  c.camera_from_world.rotation = glm::normalize(c.camera_from_world.rotation * turn);
+  return c;
+}
+
+Image<u8vec3> encoded(const Image<vec3>& linear) {
+  Image<u8vec3> out(linear.width, linear.height, u8vec3(0), Encoding::Srgb);
+  for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      out.pixels[i][k] =
+          static_cast<std::uint8_t>(srgbFromLinear(glm::clamp(linear.pixels[i][k], 0.0f, 1.0f)) * 255 + 0.5f);
+    }
+  }
+  return out;
+}
+
+Image<std::uint8_t> coverageBytes(const Image<float>& coverage) {
+  Image<std::uint8_t> out(coverage.width, coverage.height);
+  for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+    out.pixels[i] = static_cast<std::uint8_t>(glm::clamp(coverage.pixels[i], 0.0f, 1.0f) * 255 + 0.5f);
+  }
+  return out;
+}
+
+Planes planesOf(const Image<vec3>& image, const dmat3& turn) {
+  Planes p(image.width, image.height, 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const dvec3 v = turn * dvec3(image.pixels[i]);
+    for (int c = 0; c < 3; ++c) p.plane(c)[i] = static_cast<float>(v[c]);
+  }
+  return p;
+}
+
+Planes planesOf(const Image<float>& image) {
+  Planes p(image.width, image.height, 1);
+  p.values = image.pixels;
+  return p;
+}
+
+class SampleWriter {
+ public:
+  SampleWriter(const fs::path& folder, const SampleOptions& options)
+      : folder_(folder),
+        options_(options),
+        cameras_(rig(options)),
+        world_from_capture_(worldFromCapture(UpAxis::PlusZ)),
+        dome_(domeLight()),
+        dome_sampler_(dome_) {}
+
+  void write(Progress& progress) {
+    SampleDescription description{
+        options_.frames, options_.width, options_.height, kFramesPerSecond, cameras_, {}, lights()};
+    description.truth_frames = {options_.frames / 2};
+    const auto truths = static_cast<std::int64_t>(description.truth_frames.size() * options_.test_cameras);
+    progress.expect(static_cast<std::int64_t>(options_.frames * cameras_.size()) + truths * 3);
+    panorama(folder_ / "environment.exr", dome_);
+    for (const std::string& l : lights()) panorama(folder_ / "gt/environments" / (l + ".exr"), namedLight(l));
+    for (int f = 0; f < options_.frames; ++f) {
+      const Figure figure(f / kFramesPerSecond, options_.frames / kFramesPerSecond);
+      const Mesh mesh = figure.mesh(kMeshCell_m);
+      const SampleScene scene(figure, mesh, world_from_capture_);
+      if (f == 0) seedPoints(mesh);
+      photographs(scene, f, progress);
+      if (f == description.truth_frames.front()) truth(scene, mesh, f, progress);
+    }
+    writeSampleDescriptions(folder_, description);
+  }
+
+ private:
+  static std::vector<std::string> lights() { return {"studio", "sunset"}; }
+
+  fs::path in(const fs::path& relative) const {
+    const fs::path p = folder_ / relative;
+    fs::create_directories(p.parent_path());
+    return p;
+  }
+
+  void panorama(const fs::path& path, const Environment& e) const {
+    fs::create_directories(path.parent_path());
+    writeExr(path, planesOf(e.radiance, dmat3(1.0)), {"R", "G", "B"}, ExrPrecision::Half);
+  }
+
+  TraceSettings settings(int frame, std::size_t camera, int purpose, int factor) const {
+    TraceSettings s;
+    s.samples = options_.samples * factor;
+    s.seed = RandomStream(options_.seed, frame, camera, purpose).bits(0);
+    return s;
+  }
+
+  void photographs(const SampleScene& scene, int frame, Progress& progress) const {
+    for (std::size_t c = 0; c < cameras_.size(); ++c) {
+      const SampleCamera& camera = cameras_[c];
+      const SampleScene::Picture p = scene.photograph(inWorld(camera.camera, world_from_capture_),
+                                                      dome_sampler_, settings(frame, c, 0, 1), progress);
+      const fs::path file = fs::path(camera.name) / (frameName(frame) + ".png");
+      writePng(in(fs::path(camera.test ? "gt/rgb" : "images") / file), encoded(p.radiance));
+      writePng(in(fs::path(camera.test ? "gt/mask" : "masks") / file), coverageBytes(p.coverage));
+      progress.step();
+    }
+  }
+
+  void truth(const SampleScene& scene, const Mesh& mesh, int frame, Progress& progress) const {
+    const dmat3 capture_from_world = glm::transpose(world_from_capture_);
+    fs::create_directories(folder_ / "gt/mesh");
+    writeMeshPly(folder_ / "gt/mesh" / (frameName(frame) + ".ply"), mesh);
+    for (std::size_t c = 0; c < cameras_.size(); ++c) {
+      if (!cameras_[c].test) continue;
+      const Camera camera = inWorld(cameras_[c].camera, world_from_capture_);
+      const fs::path file = fs::path(cameras_[c].name) / (frameName(frame) + ".exr");
+      const TracedMaps m = scene.maps(camera, settings(frame, c, 1, kTruthSamples), progress);
+      writeExr(in(fs::path("gt/base_color") / file), planesOf(m.base_color, dmat3(1.0)), {"R", "G", "B"},
+               ExrPrecision::Half);
+      writeExr(in(fs::path("gt/normal") / file), planesOf(m.normal, capture_from_world), {"R", "G", "B"},
+               ExrPrecision::Half);
+      writeExr(in(fs::path("gt/roughness") / file), planesOf(m.roughness), {"Y"}, ExrPrecision::Half);
+      writeExr(in(fs::path("gt/ao") / file), planesOf(m.ambient_occlusion), {"Y"}, ExrPrecision::Half);
+      writeExr(in(fs::path("gt/depth") / file), planesOf(m.depth_m), {"Y"}, ExrPrecision::Float);
+      progress.step();
+      int purpose = 2;
+      for (const std::string& l : lights()) {
+        const EnvironmentSampler sampler(namedLight(l));
+        const SampleScene::Picture p =
+            scene.photograph(camera, sampler, settings(frame, c, purpose++, kTruthSamples), progress);
+        writeExr(in(fs::path("gt/relight_" + l) / file), planesOf(p.radiance, dmat3(1.0)), {"R", "G", "B"},
+                 ExrPrecision::Half);
+        writePng(in(fs::path("gt/relight_" + l) / fs::path(file).replace_extension(".png")),
+                 encoded(p.radiance));
+        progress.step();
+      }
+    }
+  }
+
+  // Points of the surface with the colour of their material: what a feature matcher would have given, without
+  // its errors.
+  void seedPoints(const Mesh& mesh) const {
+    PointCloud points;
+    const Figure figure(0, options_.frames / kFramesPerSecond);
+    const RandomStream random(options_.seed, 0x5eedu);
+    for (std::size_t i = 0; i < kSeedPoints; ++i) {
+      const vec3 x = mesh.vertices[random.below(i, mesh.vertices.size())];
+      points.position_m.push_back(x);
+      points.color.push_back(u8vec3(
+          srgbFromLinear(glm::clamp(lookOf(figure.pointAt(x)).base_color, 0.0f, 1.0f)) * 255.0f + 0.5f));
+    }
+    writePointsPly(folder_ / "points3D.ply", points);
+  }
+
+  fs::path folder_;
+  SampleOptions options_;
+  std::vector<SampleCamera> cameras_;
+  dmat3 world_from_capture_;
+  Environment dome_;
+  EnvironmentSampler dome_sampler_;
+};
+
+}  // namespace
+
+std::string frameName(int frame) { return fmt::format("{:06}", frame); }
+
+void makeSample(const fs::path& folder, const SampleOptions& options, Progress& progress) {
+  if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" exists and is not empty; name a new folder", folder.string()));
+  }
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed)
+    throw Error(Error::Kind::Storage,
+                fmt::format("cannot make \"{}\": {}", folder.string(), failed.message()));
+  SampleWriter(folder, options).write(progress);
+}
+
+}  // namespace beam

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// A synthetic dome capture of our own making, with full ground truth, in the layout of the data sets
+// (dataset.json, transforms.json, sparse/, images, masks, environment, gt). The demo and the tests use it.
+#pragma once
+
+#include <filesystem>
+
+#include "core/base/progress.h"
+
+namespace beam {
+
+struct SampleOptions {
+  int frames = 1;        // at 30 a second; the figure moves its arms, and turns round in long takes
+  int cameras = 12;      // for training, in three rings around the figure
+  int test_cameras = 2;  // held out, with ground truth
+  int width = 240, height = 320;
+  int samples = 48;  // light paths a pixel
+  int seed = 1;
+};
+
+// Writes into `folder`, which must not exist or be empty: Error{Usage} otherwise. The same bytes for any
+// number of threads.
+void makeSample(const std::filesystem::path& folder, const SampleOptions& options, Progress& progress);
+
+}  // namespace beam

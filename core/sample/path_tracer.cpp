@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/sample/path_tracer.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/rng.h"
+#include "core/math/brdf.h"
+#include "core/math/sampling.h"
+#include "core/sample/look.h"
+
+namespace beam {
+namespace {
+
+constexpr float kOffset_m = 3e-4f;
+constexpr float kBrightest = 20;  // of one path, against fireflies
+constexpr std::size_t kRows = 4;
+
+struct Hit {
+  vec3 position, normal;  // shading normal
+  float depth = 0;        // along the ray
+  Look look;
+};
+
+// Uniform numbers of one path, a dimension each call.
+class PathNumbers {
+ public:
+  PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples)
+      : random_(seed, pixel), sample_(sample), strata_(std::max(1, samples)) {}
+  // The first pairs are stratified along one axis by the sample's number (permuted a pixel and dimension).
+  vec2 next() {
+    const std::uint64_t d = dimension_++;
+    const std::uint64_t shift = random_.bits(1000003 + d) % strata_;
+    const float u = random_.uniform(2 * (d * 65537 + sample_)),
+                v = random_.uniform(2 * (d * 65537 + sample_) + 1);
+    const auto stratum = static_cast<float>((sample_ * (d % 2 ? 7 : 1) + shift) % strata_);
+    return {(stratum + u) / static_cast<float>(strata_), v};
+  }
+
+ private:
+  RandomStream random_;
+  std::uint64_t sample_, strata_, dimension_ = 0;
+};
+
+}  // namespace
+
+struct SampleScene::State {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  const Figure& figure;
+  mat3 capture_from_world;
+  std::vector<vec3> vertices, normals;  // world
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  State(const Figure& f, const Mesh& mesh, const dmat3& world_from_capture)
+      : figure(f), capture_from_world(glm::transpose(world_from_capture)), triangles(mesh.triangles) {
+    const mat3 turn(world_from_capture);
+    vertices.resize(mesh.vertices.size());
+    normals.resize(mesh.vertices.size());
+    parallelFor(vertices.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        vertices[i] = turn * mesh.vertices[i];
+        normals[i] = turn * f.normalAt(mesh.vertices[i]);
+      }
+    });
+    device = rtcNewDevice("threads=1,isa=avx2");
+    if (!device) throw Error(Error::Kind::Bug, "Embree did not start");
+    scene = rtcNewScene(device);
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* v = static_cast<float*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
+    auto* t = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
+    if (!v || !t) throw Error(Error::Kind::OutOfMemory, "Embree has no memory for the sample's mesh");
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      v[3 * i] = vertices[i].x, v[3 * i + 1] = vertices[i].y, v[3 * i + 2] = vertices[i].z;
+    for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].data(), 3, t + 3 * i);
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(scene, g);
+    rtcReleaseGeometry(g);
+    rtcCommitScene(scene);
+  }
+  ~State() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  static RTCRay rayOf3(vec3 o, vec3 d) {
+    RTCRay r{};
+    r.org_x = o.x, r.org_y = o.y, r.org_z = o.z, r.dir_x = d.x, r.dir_y = d.y, r.dir_z = d.z;
+    r.tfar = std::numeric_limits<float>::infinity();
+    r.mask = 0xffffffffu;
+    return r;
+  }
+
+  bool hit(vec3 o, vec3 d, Hit& out) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit rh{};
+    rh.ray = rayOf3(o, d);
+    rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, &context, &rh);
+    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    const auto& t = triangles[rh.hit.primID];
+    const float u = rh.hit.u, v = rh.hit.v;
+    out.depth = rh.ray.tfar;
+    out.position = o + out.depth * d;
+    out.normal = glm::normalize((1 - u - v) * normals[t[0]] + u * normals[t[1]] + v * normals[t[2]]);
+    out.look = lookOf(figure.pointAt(capture_from_world * out.position));
+    return true;
+  }
+
+  bool occluded(vec3 o, vec3 d) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay r = rayOf3(o, d);
+    rtcOccluded1(scene, &context, &r);
+    return r.tfar < 0;
+  }
+
+  // Reflectance times cosine; normals turned towards the eye.
+  static vec3 scatter(const Hit& h, vec3 n, vec3 wi, vec3 wo) {
+    const float cosine = glm::dot(n, wi);
+    if (cosine <= 0) return vec3(0);
+    const Reflectance r = reflectance(n, wi, wo, ggxAlpha(h.look.roughness));
+    return (h.look.base_color * ((1 - r.fresnel) / kPi) + vec3(r.specular)) * cosine;
+  }
+
+  // Light from the panorama at a hit: one direction by the panorama's density and one by the cosine, balance
+  // heuristic.
+  vec3 direct(const Hit& h, vec3 n, vec3 wo, const EnvironmentSampler& light, PathNumbers& numbers) const {
+    vec3 sum(0);
+    const vec3 o = h.position + kOffset_m * n;
+    const vec2 u = numbers.next(), c = numbers.next();
+    const auto add = [&](vec3 wi, vec3 radiance, float pdf_light) {
+      const float cosine = glm::dot(n, wi);
+      if (cosine <= 0 || pdf_light + cosine <= 0) return;
+      const vec3 f = scatter(h, n, wi, wo) * radiance / (pdf_light + cosine / kPi);
+      if (luminanceOf(f) > 0 && !occluded(o, wi)) sum += f;
+    };
+    const EnvironmentSampler::Sample s = light.sample(u.x, u.y);
+    add(s.direction, s.radiance, s.pdf);
+    const vec3 wi = Frame3(n).toWorld(cosineDirection(c));
+    add(wi, light.texelRadiance(wi), light.pdf(wi));
+    return sum;
+  }
+
+  static float luminanceOf(vec3 c) { return c.x + c.y + c.z; }
+
+  vec3 radiance(Hit h, vec3 wo, const EnvironmentSampler& light, int bounces, PathNumbers& numbers) const {
+    vec3 sum(0), throughput(1);
+    for (int bounce = 0;; ++bounce) {
+      const vec3 n = glm::dot(h.normal, wo) < 0 ? -h.normal : h.normal;
+      sum += throughput * direct(h, n, wo, light, numbers);
+      if (bounce == bounces) break;
+      const vec3 wi = Frame3(n).toWorld(cosineDirection(numbers.next()));
+      const float cosine = glm::dot(n, wi);
+      if (cosine <= 1e-4f) break;
+      throughput *= scatter(h, n, wi, wo) * (kPi / cosine);
+      const vec3 o = h.position + kOffset_m * n;
+      if (!hit(o, wi, h)) break;
+      wo = -wi;
+    }
+    return glm::min(sum, vec3(kBrightest));
+  }
+
+  float skyVisibility(vec3 x, vec3 n, int samples, PathNumbers numbers) const {
+    int open = 0;
+    const Frame3 frame(n);
+    const vec2 start = numbers.next();
+    const R2Sequence sequence{static_cast<std::uint32_t>(start.x * 0x1p31f),
+                              static_cast<std::uint32_t>(start.y * 0x1p31f)};
+    for (int i = 0; i < samples; ++i) {
+      open += !occluded(x + kOffset_m * n,
+                        frame.toWorld(cosineDirection(sequence(static_cast<std::uint32_t>(i)))));
+    }
+    return static_cast<float>(open) / static_cast<float>(samples);
+  }
+
+  struct CameraRays {
+    Rigid3 world_from_camera;
+    Intrinsics intrinsics;
+    vec3 origin;
+    explicit CameraRays(const Camera& c)
+        : world_from_camera(inverse(c.camera_from_world)),
+          intrinsics(c.intrinsics),
+          origin(world_from_camera.translation_m) {}
+    vec3 direction(dvec2 p) const {
+      return vec3(glm::normalize(world_from_camera.rotation * rayOf(intrinsics, p)));
+    }
+  };
+
+  // Calls body(pixel x, y, sample's position, numbers, sample) for every sample of every pixel, parallel over
+  // rows.
+  template <class Body>
+  static void forEachSample(const Camera& camera, const TraceSettings& s, const Progress& progress,
+                            Body&& body) {
+    parallelFor(static_cast<std::size_t>(camera.height), kRows, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end && !progress.stopRequested(); ++y) {
+        for (int x = 0; x < camera.width; ++x) {
+          for (int i = 0; i < s.samples; ++i) {
+            PathNumbers numbers(s.seed, y * static_cast<std::size_t>(camera.width) + x, i, s.samples);
+            const vec2 jitter = numbers.next();
+            body(x, static_cast<int>(y), dvec2(x + jitter.x, y + jitter.y), numbers, i);
+          }
+        }
+      }
+    });
+    progress.check();
+  }
+};
+
+SampleScene::SampleScene(const Figure& figure, const Mesh& mesh, const dmat3& world_from_capture)
+    : state_(std::make_unique<State>(figure, mesh, world_from_capture)) {}
+SampleScene::~SampleScene() = default;
+
+SampleScene::Picture SampleScene::photograph(const Camera& camera, const EnvironmentSampler& light,
+                                             const TraceSettings& s, const Progress& progress) const {
+  Picture out{Image<vec3>(camera.width, camera.height, vec3(0), Encoding::Linear),
+              Image<float>(camera.width, camera.height)};
+  const State::CameraRays rays(camera);
+  const float share = 1.0f / static_cast<float>(s.samples);
+  State::forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int) {
+    const vec3 d = rays.direction(p);
+    Hit h;
+    if (!state_->hit(rays.origin, d, h)) return;
+    out.coverage(x, y) += share;
+    out.radiance(x, y) += share * state_->radiance(h, -d, light, s.bounces, numbers);
+  });
+  return out;
+}
+
+TracedMaps SampleScene::maps(const Camera& camera, const TraceSettings& s, const Progress& progress) const {
+  const int w = camera.width, h = camera.height;
+  TracedMaps m{Image<vec3>(w, h),  Image<vec3>(w, h),  Image<float>(w, h),
+               Image<float>(w, h), Image<float>(w, h), Image<float>(w, h)};
+  const State::CameraRays rays(camera);
+  const vec3 axis = vec3(glm::normalize(rays.world_from_camera.rotation * dvec3(0, 0, 1)));
+  const float share = 1.0f / static_cast<float>(s.samples);
+  State::forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int sample) {
+    const vec3 d = rays.direction(p);
+    Hit hit;
+    if (!state_->hit(rays.origin, d, hit)) return;
+    const vec3 n = glm::dot(hit.normal, d) > 0 ? -hit.normal : hit.normal;
+    m.coverage(x, y) += share;
+    m.base_color(x, y) += share * hit.look.base_color;
+    m.roughness(x, y) += share * hit.look.roughness;
+    m.normal(x, y) += share * n;
+    m.depth_m(x, y) += share * hit.depth * glm::dot(d, axis);
+    constexpr int kEvery = 4, kSky = 32;  // sky rays of every fourth sample
+    if (sample % kEvery == 0) {
+      const int used = (s.samples + kEvery - 1) / kEvery;
+      m.ambient_occlusion(x, y) +=
+          state_->skyVisibility(hit.position, n, kSky, numbers) / static_cast<float>(used);
+    }
+  });
+  for (std::size_t i = 0; i < m.coverage.pixels.size(); ++i) {
+    const float c = m.coverage.pixels[i];
+    m.depth_m.pixels[i] = c > 0.5f ? m.depth_m.pixels[i] / c : 0;
+    const float length = glm::length(m.normal.pixels[i]);
+    m.normal.pixels[i] = length > 1e-6f ? m.normal.pixels[i] / length : vec3(0);
+    m.ambient_occlusion.pixels[i] = std::min(m.ambient_occlusion.pixels[i], 1.0f);
+  }
+  return m;
+}
+
+float SampleScene::skyVisibility(vec3 x, vec3 normal, int samples, std::uint64_t seed) const {
+  return state_->skyVisibility(x, normal, samples, PathNumbers(seed, 0, 0, 1));
+}
+
+}  // namespace beam

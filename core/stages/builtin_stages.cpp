@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/stages/builtin_stages.h"
+
+namespace beam {
+
+void registerBuiltinStages(StageRegistry& registry) {
+  registry.add(makeCaptureStage);
+  registry.add(makeLightStage);
+  registry.add(makeSurfaceStage);
+  registry.add(makeMaterialsStage);
+}
+
+}  // namespace beam

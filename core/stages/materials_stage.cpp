@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include "core/io/image_file.h"
+#include "core/io/splat_ply.h"
+#include "core/method/bake_materials.h"
+#include "core/method/fit_materials.h"
+#include "core/pipeline/frame_result.h"
+#include "core/stages/builtin_stages.h"
+#include "core/stages/material_map_files.h"
+#include "core/stages/training_input.h"
+
+namespace beam {
+namespace {
+
+struct MaterialsOptions {
+  BakeMaterialsOptions bake;
+  FitMaterialsOptions fit;
+};
+
+void describe(Fields& fields, MaterialsOptions& options) {
+  describe(fields, options.bake);
+  fields.group("fit", [&] { describe(fields, options.fit); });
+}
+
+class MaterialsStage final : public StageOf<MaterialsOptions> {
+ public:
+  const StageInfo& info() const override {
+    static const StageInfo kInfo{
+        .id = "materials",
+        .title = "Materials",
+        .summary = "Measures ambient occlusion and base colour and fits them to the Gaussians.",
+        .steps = {{.id = "bake",
+                   .title = "Bake maps",
+                   .source = "BEAM 3.2, eq. 3 and 20",
+                   .reads = {Reads::Pictures},
+                   .inputs = {"capture.import", "light.import", "surface.refine"},
+                   .weight = 20},
+                  {.id = "fit",
+                   .title = "Fit materials",
+                   .source = "BEAM 3.2",
+                   .inputs = {"capture.import", "surface.refine", "materials.bake"},
+                   .weight = 10}}};
+    return kInfo;
+  }
+
+  void run(std::string_view step, StepContext& c) const override { step == "bake" ? bake(c) : fit(c); }
+
+ private:
+  static GaussianCloud cloudOf(const StepContext& c) {
+    return readSplatPly(c.input("surface.refine") / kCloudFile).cloud;
+  }
+
+  void bake(StepContext& c) const {
+    const Environment light = makeEnvironment(readRadiance(c.input("light.import") / kEnvironmentFile));
+    const std::vector<FrameView> views = trainingViews(c);
+    const std::vector<MaterialMaps> maps =
+        bakeMaterials(views, cloudOf(c), light, options_.bake, c.device, c.progress);
+    const std::filesystem::path folder = c.folder / kMapsFolder;
+    std::filesystem::create_directory(folder);
+    for (std::size_t i = 0; i < maps.size(); ++i) writeMaterialMaps(folder, views[i].name, maps[i]);
+  }
+
+  void fit(StepContext& c) const {
+    const std::filesystem::path folder = c.input("materials.bake") / kMapsFolder;
+    const std::vector<Camera> cameras = trainingCameras(c);
+    std::vector<MaterialMaps> maps;
+    std::size_t camera = 0;
+    for (const View& view : c.capture.views) {
+      if (view.split != Split::Train) continue;
+      const Camera& own = cameras[camera++];
+      if (hasMaterialMaps(folder, view.name)) maps.push_back(readMaterialMaps(folder, view.name, own));
+    }
+    const GaussianCloud cloud = cloudOf(c);
+    const Materials materials = fitMaterials(maps, cloud, static_cast<float>(options_.bake.roughness),
+                                             options_.fit, c.device, c.progress);
+    validate(materials, cloud);
+    writeSplatPly(c.folder / kMaterialsFile, cloud, &materials);
+    c.scores["views"] = static_cast<double>(maps.size());
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> makeMaterialsStage() { return std::make_unique<MaterialsStage>(); }
+
+}  // namespace beam

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of solved frames as files (contract 3): OUT/<channel>/<camera>/<frame>.<ext>. Used by `beam
+// render`, by the evaluation and by the studio.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/pipeline/project.h"
+#include "core/render/device.h"
+
+namespace beam {
+
+struct RenderRequest {
+  std::vector<std::string> channels;  // of renderChannelNames(), "mesh"
+  std::vector<ViewIndex> views;
+  std::vector<FrameIndex> frames;
+  std::vector<std::filesystem::path> environments;  // for "relight": a folder relight_<stem> each
+  bool world_frame = false;  // normals and meshes in world axes instead of the capture's
+  std::filesystem::path out;
+};
+
+// rgb relight base_color ao roughness normal depth alpha mesh
+const std::vector<std::string>& renderChannelNames();
+
+// Throws Error{Usage} for an unknown channel or relight without a panorama, Error{Data} when a frame is not
+// solved as far as a channel needs.
+void renderChannels(const Project& project, const RenderRequest& request, ComputeDevice& device,
+                    Progress& progress);
+
+}  // namespace beam

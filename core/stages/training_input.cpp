@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/stages/training_input.h"
+
+namespace beam {
+namespace {
+
+int downscaleOf(const StepContext& context) { return std::get<int>(context.setting("capture.downscale")); }
+
+}  // namespace
+
+std::vector<FrameView> trainingViews(const StepContext& context) {
+  return loadFrameViews(context.capture, context.frame, Split::Train, downscaleOf(context));
+}
+
+std::vector<Camera> trainingCameras(const StepContext& context) {
+  std::vector<Camera> cameras;
+  for (const View& view : context.capture.views) {
+    if (view.split == Split::Train) cameras.push_back(scaledDown(view.camera, downscaleOf(context)));
+  }
+  return cameras;
+}
+
+}  // namespace beam

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The training views of a step's frame, as capture.downscale wants them.
+#pragma once
+
+#include <vector>
+
+#include "core/pipeline/stage.h"
+#include "core/scene/frame_views.h"
+
+namespace beam {
+
+// The step must have "capture.import" among its inputs: its key then holds the downscale.
+std::vector<FrameView> trainingViews(const StepContext& context);
+std::vector<Camera> trainingCameras(const StepContext& context);
+
+}  // namespace beam

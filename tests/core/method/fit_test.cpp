@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/base/rng.h"
+#include "core/method/fit_materials.h"
+#include "core/render/deferred.h"
+#include "tests/support/sphere_capture.h"
+#include "tests/support/splat_shapes.h"
+
+namespace beam {
+namespace {
+
+class MaterialFit : public ::testing::Test {
+ protected:
+  MaterialFit() {
+    testing::addSphere(cloud, vec3(0), 0.4f, 250);
+    for (int i = 0; i < 24; ++i) {
+      const double y = 1 - (2 * i + 1.0) / 24, r = std::sqrt(1 - y * y), phi = 2.39996323 * i;
+      cameras.push_back(
+          testing::cameraLookingAt(2.0 * dvec3(r * std::cos(phi), 0.9 * y, r * std::sin(phi)), dvec3(0), 48, 80));
+    }
+  }
+
+  Materials blank() const {
+    return {std::vector<float>(cloud.size(), 0.5f), ShBlock(cloud.size(), 3), ShBlock(cloud.size(), 1)};
+  }
+
+  // Maps as a bake would give them, from known materials.
+  std::vector<MaterialMaps> mapsOf(const Materials& m) {
+    std::vector<MaterialMaps> maps;
+    GBufferRenderer renderer(*device);
+    for (const Camera& camera : cameras) {
+      const GBuffer g = renderer.render(cloud, &m, camera);
+      const int w = camera.width, h = camera.height;
+      MaterialMaps map{camera, Planes(w, h, 1), Planes(w, h, 3), Planes(w, h, 1), Planes(w, h, 1)};
+      for (std::size_t i = 0; i < g.alpha.pixels.size(); ++i) {
+        const float alpha = g.alpha.pixels[i];
+        if (alpha < 0.3f) continue;
+        map.ambient_occlusion.values[i] = g.ambient_occlusion.pixels[i] / alpha;
+        for (int c = 0; c < 3; ++c) map.base_color.plane(c)[i] = g.base_color.pixels[i][c] / alpha;
+        map.ao_weight.values[i] = map.base_color_weight.values[i] = 1;
+      }
+      maps.push_back(std::move(map));
+    }
+    return maps;
+  }
+
+  Materials fit(std::span<const MaterialMaps> maps, const FitMaterialsOptions& options) {
+    Progress progress;
+    return fitMaterials(maps, cloud, 0.5f, options, *device, progress);
+  }
+
+  struct Difference {
+    float worst = 0;
+    double rms = 0;
+  };
+  // Of what the training cameras see.
+  Difference difference(const Materials& a, const Materials& b) {
+    GBufferRenderer renderer(*device);
+    Difference d;
+    int count = 0;
+    for (const Camera& camera : cameras) {
+      const GBuffer p = renderer.render(cloud, &a, camera), q = renderer.render(cloud, &b, camera);
+      for (std::size_t i = 0; i < p.alpha.pixels.size(); ++i) {
+        if (p.alpha.pixels[i] < 0.9f) continue;
+        const vec4 apart(p.base_color.pixels[i] - q.base_color.pixels[i],
+                         p.ambient_occlusion.pixels[i] - q.ambient_occlusion.pixels[i]);
+        for (int c = 0; c < 4; ++c) d.worst = std::max(d.worst, std::abs(apart[c]));
+        d.rms += glm::dot(apart, apart);
+        count += 4;
+      }
+    }
+    d.rms = std::sqrt(d.rms / count);
+    return d;
+  }
+
+  std::unique_ptr<ComputeDevice> device = makeCpuDevice();
+  GaussianCloud cloud;
+  std::vector<Camera> cameras;
+  FitMaterialsOptions linear{.solver = "linear", .linear_iterations = 2000, .regularization = 1e-7};
+};
+
+TEST_F(MaterialFit, GivesConstantMapsBackExactly) {
+  Materials truth = blank();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    truth.base_color.of(i)[0] = -1;
+    truth.base_color.of(i)[1] = -0.5f;
+    truth.base_color.of(i)[2] = 0.8f;
+    truth.ambient_occlusion.of(i)[0] = 1.2f;
+  }
+  const Materials found = fit(mapsOf(truth), {.solver = "linear", .linear_iterations = 5});
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (int k = 0; k < kShCount * 3; ++k) EXPECT_NEAR(found.base_color.of(i)[k], truth.base_color.of(i)[k], 1e-3);
+    EXPECT_NEAR(found.ambient_occlusion.of(i)[0], 1.2f, 1e-3);
+  }
+  EXPECT_EQ(found.roughness, std::vector<float>(cloud.size(), 0.5f));
+}
+
+TEST_F(MaterialFit, RecoversPlantedCoefficients) {
+  Materials truth = blank();
+  const RandomStream random(4);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (int k = 0; k < 4; ++k) {  // degree 1: 24 cameras on one side of each splat determine it
+      const float size = k == 0 ? 0.4f : 0.1f;
+      for (int c = 0; c < 3; ++c) truth.base_color.of(i)[k * 3 + c] = size * random.normal(i * 64 + k * 4 + c);
+      truth.ambient_occlusion.of(i)[k] = size * random.normal(i * 64 + k * 4 + 3);
+    }
+  }
+  const Materials found = fit(mapsOf(truth), linear);
+  EXPECT_LT(difference(truth, found).worst, 2e-3f);
+}
+
+TEST_F(MaterialFit, LendsUnseenGaussiansTheColorOfTheirNeighbours) {
+  Materials truth = blank();
+  for (std::size_t i = 0; i < cloud.size(); ++i) truth.base_color.of(i)[0] = cloud.position_m[i].y > 0 ? 1.0f : -1.0f;
+  std::vector<MaterialMaps> maps = mapsOf(truth);
+  testing::addSplat(cloud, {0, 0.3f, 0}, {0, 1, 0}, 0.02f, 0.002f);  // buried under the top
+  const Materials found = fit(maps, {.solver = "linear", .linear_iterations = 10});
+  EXPECT_NEAR(found.base_color.of(cloud.size() - 1)[0], 1, 0.1);
+}
+
+TEST_F(MaterialFit, IgnoresPixelsWithoutWeight) {
+  Materials truth = blank();
+  for (std::size_t i = 0; i < cloud.size(); ++i) truth.base_color.of(i)[0] = 0.7f;
+  std::vector<MaterialMaps> maps = mapsOf(truth);
+  for (MaterialMaps& m : maps) {
+    for (std::size_t i = 0; i < m.base_color_weight.values.size(); i += 3) {
+      m.base_color_weight.values[i] = 0;
+      for (int c = 0; c < 3; ++c) m.base_color.plane(c)[i] = 100;
+    }
+  }
+  const Materials found = fit(maps, {.solver = "linear", .linear_iterations = 20});
+  EXPECT_LT(difference(truth, found).worst, 1e-3f);
+}
+
+TEST_F(MaterialFit, IsTheSameForAnyNumberOfThreads) {
+  Materials truth = blank();
+  const RandomStream random(6);
+  for (std::size_t i = 0; i < truth.base_color.coefficients.size(); ++i) {
+    truth.base_color.coefficients[i] = 0.05f * random.normal(i);
+  }
+  const std::vector<MaterialMaps> maps = mapsOf(truth);
+  setThreadCount(1);
+  const Materials one = fit(maps, {.solver = "linear"});
+  setThreadCount(2);
+  const Materials two = fit(maps, {.solver = "linear"});
+  setThreadCount(0);
+  EXPECT_EQ(one.base_color.coefficients, two.base_color.coefficients);
+  EXPECT_EQ(one.ambient_occlusion.coefficients, two.ambient_occlusion.coefficients);
+}
+
+TEST_F(MaterialFit, ByAdamAgreesWithTheLinearSolve) {
+  Materials truth = blank();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (int c = 0; c < 3; ++c) truth.base_color.of(i)[c] = -0.8f + 0.5f * c + cloud.position_m[i].x;
+    truth.ambient_occlusion.of(i)[0] = 1 + cloud.position_m[i].y;
+  }
+  const std::vector<MaterialMaps> maps = mapsOf(truth);
+  const Materials adam = fit(maps, {.solver = "adam", .adam_iterations = 1200, .regularization = 1e-6});
+  EXPECT_LT(difference(truth, fit(maps, linear)).worst, 2e-3f);
+  const Difference d = difference(truth, adam);
+  std::printf("adam %g %g\n", d.worst, d.rms);
+  EXPECT_LT(d.rms, 0.01);
+}
+
+TEST_F(MaterialFit, NeedsAView) { EXPECT_THROW(fit({}, linear), Error); }
+
+TEST_F(MaterialFit, StopsWhenAsked) {
+  std::stop_source stop;
+  stop.request_stop();
+  Progress progress(stop.get_token());
+  const std::vector<MaterialMaps> maps = mapsOf(blank());
+  EXPECT_THROW(fitMaterials(maps, cloud, 0.5f, linear, *device, progress), Cancelled);
+}
+
+}  // namespace
+}  // namespace beam

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "tests/core/pipeline/fake_pipeline.h"
+
+namespace beam::testing {
+namespace {
+
+using Keys = std::map<std::string, Digest>;
+
+Keys keysOf(const Project& project, FrameIndex frame = FrameIndex{0}) {
+  Keys keys;
+  for (const char* step : {"capture.import", "light.import", "surface.seed", "surface.fit", "surface.refine",
+                           "materials.bake"}) {
+    keys[step] = project.key(step, frame);
+  }
+  return keys;
+}
+
+// Steps whose keys differ.
+std::vector<std::string> changedSteps(const Keys& a, const Keys& b) {
+  std::vector<std::string> changed;
+  for (const auto& [step, key] : a) {
+    if (key != b.at(step)) changed.push_back(step);
+  }
+  return changed;
+}
+
+class KeyLaw : public ::testing::Test {
+ protected:
+  FakeHouse house_;
+  Project project_ = house_.newProject();
+  Keys before_ = keysOf(project_);
+  std::vector<std::string> changedBy(std::string_view key, const FieldValue& value) {
+    project_.set(key, value);
+    return changedSteps(before_, keysOf(project_));
+  }
+};
+
+TEST_F(KeyLaw, SpeedOnlyFieldsVoidNothing) { EXPECT_TRUE(changedBy("surface.batch", 7).empty()); }
+
+TEST_F(KeyLaw, AValueEqualToTheDefaultVoidsNothing) {
+  EXPECT_TRUE(changedBy("surface.iterations", 10).empty());
+  EXPECT_TRUE(changedBy("surface.refine.normal_weight", 0.03).empty());
+}
+
+TEST_F(KeyLaw, AResultFieldVoidsItsStageAndWhatFollows) {
+  EXPECT_EQ(changedBy("surface.iterations", 20),
+            (std::vector<std::string>{"materials.bake", "surface.fit", "surface.refine", "surface.seed"}));
+}
+
+TEST_F(KeyLaw, AFieldOfAStepsGroupLeavesEarlierStepsAlone) {
+  EXPECT_EQ(changedBy("surface.refine.normal_weight", 0.1),
+            (std::vector<std::string>{"materials.bake", "surface.refine"}));
+}
+
+TEST_F(KeyLaw, AFieldOfAnEarlierStageVoidsOnlyWhatReadsIt) {
+  EXPECT_EQ(changedBy("light.iterations", 20), (std::vector<std::string>{"light.import", "materials.bake"}));
+}
+
+TEST_F(KeyLaw, GoingBackFindsTheOldKey) {
+  changedBy("surface.iterations", 20);
+  EXPECT_TRUE(changedBy("surface.iterations", 10).empty());
+}
+
+TEST_F(KeyLaw, APresetThatSaysTheSameAsASettingGivesTheSameKey) {
+  project_.set("surface.iterations", 3);
+  const Keys by_setting = keysOf(project_);
+  project_.reset("surface.iterations");
+  project_.setPreset("draft");
+  EXPECT_EQ(keysOf(project_), by_setting);
+}
+
+TEST_F(KeyLaw, APictureVoidsItsOwnFrameOnly) {
+  const Keys other_before = keysOf(project_, FrameIndex{1});
+  house_.frames->changed[{2, 0}] = 99;
+  EXPECT_EQ(changedSteps(before_, keysOf(project_)),
+            (std::vector<std::string>{"materials.bake", "surface.fit", "surface.refine", "surface.seed"}));
+  EXPECT_EQ(keysOf(project_, FrameIndex{1}), other_before);
+}
+
+TEST_F(KeyLaw, ThePanoramaVoidsMaterialsOnly) {
+  std::ofstream(house_.root() / "light.hdr") << "other light";
+  EXPECT_EQ(changedSteps(before_, keysOf(house_.open())),
+            (std::vector<std::string>{"light.import", "materials.bake"}));
+}
+
+TEST_F(KeyLaw, HeldOutCamerasVoidSurface) {
+  project_.setHoldOut({"top"});
+  EXPECT_EQ(changedSteps(before_, keysOf(project_)).size(), 5u);
+}
+
+TEST_F(KeyLaw, HeldOutPicturesEnterNoKey) {
+  project_.setHoldOut({"top"});
+  const Keys held = keysOf(project_);
+  house_.frames->changed[{2, 0}] = 99;  // of "top"
+  EXPECT_EQ(keysOf(project_), held);
+}
+
+TEST_F(KeyLaw, NamesPathsAndFurtherFramesEnterNoKey) {
+  std::filesystem::rename(house_.root() / "p.beam", house_.root() / "other.beam");
+  std::filesystem::rename(house_.root() / "light.hdr", house_.root() / "moved.hdr");
+  Project moved = house_.open("other.beam");
+  moved.setEnvironment(house_.root() / "moved.hdr");
+  house_.frame_names.push_back("003");
+  EXPECT_EQ(keysOf(moved), before_);
+}
+
+TEST(KeyText, ListsThatReadAlikeDiffer) {
+  KeyIngredients a{"s.t", 1, {{"x", "1\nparameter y 1:2"}}, {}, {}};
+  KeyIngredients b{"s.t", 1, {{"x", "1"}, {"y", "2"}}, {}, {}};
+  EXPECT_NE(keyOf(a), keyOf(b));
+  b.version = 2;
+  EXPECT_NE(keyOf(b), keyOf({"s.t", 1, {{"x", "1"}, {"y", "2"}}, {}, {}}));
+}
+
+}  // namespace
+}  // namespace beam::testing

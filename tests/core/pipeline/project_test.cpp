@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/pipeline/file_lock.h"
+#include "core/pipeline/project_report.h"
+#include "tests/core/pipeline/fake_pipeline.h"
+
+namespace beam::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <class Body>
+std::string messageOf(Error::Kind kind, Body&& body) {
+  try {
+    body();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), kind) << e.what();
+    return e.what();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
+
+TEST(ProjectSettings, AnUnknownKeyNamesTheNearest) {
+  FakeHouse house;
+  Project p = house.newProject();
+  EXPECT_THAT(messageOf(Error::Kind::Usage, [&] { p.set("surface.iteration", 5); }),
+              HasSubstr("surface.iterations"));
+  EXPECT_THAT(messageOf(Error::Kind::Usage, [&] { p.set("surfaces.iterations", 5); }),
+              HasSubstr("surface.iterations"));
+  EXPECT_THAT(messageOf(Error::Kind::Usage, [&] { p.setPreset("drift"); }), HasSubstr("draft"));
+}
+
+TEST(ProjectSettings, WrongTypesAndRangesAreRefusedAndChangeNothing) {
+  FakeHouse house;
+  Project p = house.newProject();
+  EXPECT_THAT(messageOf(Error::Kind::Usage, [&] { p.set("surface.iterations", std::string("many")); }),
+              HasSubstr("surface.iterations"));
+  messageOf(Error::Kind::Usage, [&] { p.set("surface.iterations", 0); });
+  messageOf(Error::Kind::Usage, [&] { p.set("surface.iterations", 2.5); });
+  messageOf(Error::Kind::Usage, [&] { p.set("surface.solver", std::string("magic")); });
+  EXPECT_TRUE(p.document().settings.empty());
+}
+
+TEST(ProjectSettings, OnlyWhatDiffersFromThePresetIsKept) {
+  FakeHouse house;
+  Project p = house.newProject();
+  p.set("surface.iterations", 3);
+  EXPECT_EQ(p.document().settings.size(), 1u);
+  p.setPreset("draft");  // says 3 too
+  EXPECT_TRUE(p.document().settings.empty());
+  EXPECT_EQ(std::get<int>(p.value("surface.iterations")), 3);
+  p.set("surface.iterations", 10);
+  p.save();
+  EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 10);
+}
+
+TEST(ProjectSettings, EveryFieldIsListedUnderItsFullName) {
+  FakeHouse house;
+  const std::vector<Field> fields = house.newProject().fields();
+  ASSERT_EQ(fields.size(), 16u);
+  EXPECT_EQ(fields.back().info.name, "materials.refine.normal_weight");
+}
+
+TEST(ProjectFolder, OpeningAndLookingWriteNothing) {
+  FakeHouse house;
+  house.finish(house.newProject());
+  const auto before = everythingIn(house.root());
+  const Project p = house.open();
+  EXPECT_THAT(statusText(p), HasSubstr("done"));
+  EXPECT_THAT(statusJson(p), HasSubstr("done"));
+  EXPECT_EQ(everythingIn(house.root()), before);
+}
+
+TEST(ProjectFolder, SavingTheSameWritesNothing) {
+  FakeHouse house;
+  Project p = house.newProject();
+  const auto before = everythingIn(house.root());
+  p.save();
+  EXPECT_EQ(everythingIn(house.root()), before);
+}
+
+TEST(ProjectFolder, TheLastTwentyDocumentsAreKept) {
+  FakeHouse house;
+  Project p = house.newProject();
+  for (int i = 20; i < 50; ++i) {
+    p.set("surface.iterations", i);
+    p.save();
+  }
+  std::vector<std::string> names;
+  for (const auto& e : std::filesystem::directory_iterator(house.root() / "p.beam" / "history")) {
+    names.push_back(e.path().filename().string());
+  }
+  EXPECT_EQ(names.size(), 20u);
+  EXPECT_THAT(names, ::testing::Contains("00000031.json"));
+}
+
+TEST(ProjectFolder, MembersOfALaterVersionSurviveASave) {
+  FakeHouse house;
+  house.newProject();
+  const auto file = house.root() / "p.beam" / "project.json";
+  std::string text = readTextFile(file);
+  text.insert(text.find("\"preset\""), "\"looks\": {\"studio\": [1, 2]},\n  ");
+  std::ofstream(file) << text;
+  Project p = house.open();
+  p.set("surface.iterations", 77);
+  p.save();
+  EXPECT_THAT(readTextFile(file), HasSubstr("studio"));
+  EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 77);
+}
+
+TEST(ProjectFolder, ANewerMajorFormatIsRefusedByName) {
+  FakeHouse house;
+  house.newProject();
+  const auto file = house.root() / "p.beam" / "project.json";
+  std::string text = readTextFile(file);
+  text.replace(text.find("\"major\": 1"), 10, "\"major\": 2");
+  std::ofstream(file) << text;
+  EXPECT_THAT(messageOf(Error::Kind::Data, [&] { house.open(); }), HasSubstr("newer"));
+}
+
+TEST(ProjectFolder, DamagedDocumentsAreBadInput) {
+  FakeHouse house;
+  house.newProject();
+  const auto file = house.root() / "p.beam" / "project.json";
+  const std::string good = readTextFile(file);
+  for (std::size_t length = 0; length + 2 < good.size(); length += 37) {
+    std::ofstream(file) << good.substr(0, length);
+    messageOf(Error::Kind::Data, [&] { house.open(); });
+  }
+}
+
+TEST(ProjectFolder, AForeignFolderIsNeverTaken) {
+  FakeHouse house;
+  std::filesystem::create_directories(house.root() / "mine");
+  std::ofstream(house.root() / "mine" / "letter.txt") << "dear";
+  messageOf(Error::Kind::Usage, [&] { Project::create(house.root() / "mine", {}, house.setup); });
+  messageOf(Error::Kind::Data, [&] { house.open("mine"); });
+}
+
+TEST(ProjectFolder, AnotherWriterIsNamed) {
+  FakeHouse house;
+  Project p = house.newProject();
+  const auto lock = FileLock::tryAcquire(house.root() / "p.beam" / "LOCK");
+  ASSERT_TRUE(lock);
+  p.set("surface.iterations", 99);
+  EXPECT_THAT(messageOf(Error::Kind::Locked, [&] { p.save(); }),
+              HasSubstr("process " + std::to_string(::getpid())));
+}
+
+TEST(ProjectFolder, CaptureAndProjectMayMoveTogether) {
+  FakeHouse house;
+  house.newProject();
+  std::filesystem::create_directories(house.root() / "disk");
+  for (const char* name : {"p.beam", "capture"}) {
+    std::filesystem::rename(house.root() / name, house.root() / "disk" / name);
+  }
+  const Project p = house.open("disk/p.beam");
+  EXPECT_EQ(p.captureFolder().lexically_normal(), (house.root() / "disk" / "capture").lexically_normal());
+}
+
+TEST(ProjectFolder, ALostCaptureIsNamed) {
+  FakeHouse house;
+  house.newProject();
+  std::filesystem::rename(house.root() / "capture", house.root() / "elsewhere");
+  EXPECT_THAT(messageOf(Error::Kind::Data, [&] { house.open().capture(); }), HasSubstr("capture"));
+  EXPECT_TRUE(house.open().isCapture(house.root() / "elsewhere"));
+}
+
+}  // namespace
+}  // namespace beam::testing
