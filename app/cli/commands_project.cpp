@@ -57,8 +57,6 @@ void addProcessCommand(CLI::App& app, CommandContext& context) {
     context.action = [a, &context] {
       Project project = projectFor(a->project, a->capture, context.services);
       applyFlags(project, a->project_flags);
-      project.capture();  // a capture that cannot be read leaves no project behind
-      project.save();
       return runProject(std::move(project), a->run, context);
     };
   });
@@ -93,7 +91,6 @@ void addRunCommand(CLI::App& app, CommandContext& context) {
     context.action = [a, &context] {
       Project project = Project::open(a->project, context.services.pipeline);
       applyFlags(project, a->project_flags);
-      project.save();
       return runProject(std::move(project), a->run, context);
     };
   });

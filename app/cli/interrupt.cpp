@@ -22,6 +22,7 @@ sigset_t handledSignals() {
 }  // namespace
 
 Interrupt::Interrupt() {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is a storage error with a message, not a death
   const sigset_t set = handledSignals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   thread_ = std::jthread([this, set](std::stop_token ended) {

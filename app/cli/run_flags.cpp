@@ -72,12 +72,12 @@ void applyFlags(Project& project, const ProjectFlags& flags) {
 }
 
 int runProject(Project project, const RunFlags& flags, CommandContext& context) {
-  RunRequest request;
-  request.frames = parseFrameList(flags.frames, project.capture().frames);
-  request.stage = flags.stage;
-  request.until = flags.until;
+  RunRequest request{parseFrameList(flags.frames, project.capture().frames), flags.stage, flags.until};
+  makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
+  std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
+  project.save();
   Runner runner;
-  runner.start(std::move(project), std::move(request), makeDevice(flags.device));
+  runner.start(std::move(project), std::move(request), std::move(device));
   ConsoleReporter reporter(context.console);
   for (;;) {
     if (context.stop.stop_requested()) runner.requestStop();

@@ -30,7 +30,7 @@ void addRunFlags(CLI::App& command, RunFlags& flags);
 // Throws Error{Usage} for unknown presets and settings, Error{Data} for a panorama that is not there.
 void applyFlags(Project& project, const ProjectFlags& flags);
 
-// Runs and reports until the end; the exit code.
+// Saves the project, runs it and reports until the end; the exit code. What cannot be run is not saved.
 int runProject(Project project, const RunFlags& flags, CommandContext& context);
 
 }  // namespace beam

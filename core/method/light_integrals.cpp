@@ -133,6 +133,29 @@ void integratePiece(std::span<const SurfacePoint> points, const Sampler& sampler
 
 }  // namespace
 
+namespace {
+float evenDepth(const GBuffer& g, int x, int y) {
+  static const int kR = getenv("SM") ? atoi(getenv("SM")) : 3;
+  static const float kUp = getenv("UP") ? atof(getenv("UP")) : 0;
+  const float z = g.depth_m(x, y);
+  float sum = 0, weight = 0, sq = 0;
+  for (int j = -kR; j <= kR; ++j) {
+    for (int i = -kR; i <= kR; ++i) {
+      const int u = x + i, v = y + j;
+      if (u < 0 || v < 0 || u >= g.alpha.width || v >= g.alpha.height) continue;
+      const float q = g.depth_m(u, v);
+      if (!(g.alpha(u, v) > 0.9f) || std::abs(q - z) > 0.03f) continue;
+      float f = std::max(0.0f, glm::dot(g.normal_world(x, y), g.normal_world(u, v)));
+      f *= f; f *= f; f *= f;
+      f *= std::exp(-0.5f * (i * i + j * j) / (0.5f * kR * 0.5f * kR + 1e-6f));
+      sum += f * q; sq += f * q * q;
+      weight += f;
+    }
+  }
+  const float mean = sum / weight;
+  return mean - kUp * std::sqrt(std::max(0.0f, sq / weight - mean * mean));
+}
+}
 std::vector<SurfacePoint> surfacePoints(const GBuffer& g, const Camera& camera,
                                         const Image<std::uint8_t>& mask) {
   const Image<std::uint8_t> edges = depthEdges(g.depth_m, g.alpha);
@@ -144,7 +167,7 @@ std::vector<SurfacePoint> surfacePoints(const GBuffer& g, const Camera& camera,
       const dvec3 ray = rayOf(camera.intrinsics, {x + 0.5, y + 0.5});
       const vec3 to_eye(glm::normalize(world_from_camera.rotation * -ray));
       if (!(glm::dot(g.normal_world(x, y), to_eye) > 0.05f)) continue;
-      const vec3 position(world_from_camera * (ray * static_cast<double>(g.depth_m(x, y))));
+      const vec3 position(world_from_camera * (ray * static_cast<double>(evenDepth(g, x, y))));
       points.push_back({x, y, position, g.normal_world(x, y), to_eye});
     }
   }

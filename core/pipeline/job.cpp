@@ -59,7 +59,7 @@ JobFinished Job::run(const RunRequest& request) {
   } catch (const std::bad_alloc&) {
     fail(Error::Kind::OutOfMemory,
          fmt::format(
-             "out of memory in {}{}; close other programs, or lower surface.cap or raise capture.downscale",
+             "out of memory in {}{}; close other programs, or ask for fewer Gaussians or smaller pictures",
              now_.step.empty() ? "the preparation" : now_.step,
              now_.frame ? ", frame " + now_.frame_name : std::string()));
   } catch (const std::exception& e) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,7 +45,8 @@ struct Said {
 // A started program.
 class Running {
  public:
-  Running(const std::filesystem::path& scratch, const Words& words)
+  // `max_file_bytes`: what a full disk looks like, from that size of a file on.
+  Running(const std::filesystem::path& scratch, const Words& words, rlim_t max_file_bytes = RLIM_INFINITY)
       : out_(scratch / "stdout"), err_(scratch / "stderr") {
     child_ = ::fork();
     if (child_ != 0) return;
@@ -53,6 +55,8 @@ class Running {
     std::vector<char*> arguments = {const_cast<char*>(BEAM_PROGRAM)};
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
+    const rlimit limit{max_file_bytes, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
     ::execv(BEAM_PROGRAM, arguments.data());
     ::_exit(127);
   }

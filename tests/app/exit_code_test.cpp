@@ -33,9 +33,11 @@ class ExitCode : public ::testing::Test {
     EXPECT_THAT(said.err, HasSubstr(hint));
     EXPECT_THAT(said.err, ::testing::StartsWith("error: "));
   }
+  // Of a training camera, frame 000000.
   fs::path firstPicture(const fs::path& capture) const {
     for (const auto& entry : fs::recursive_directory_iterator(capture / "images")) {
-      if (entry.is_regular_file()) return entry.path();
+      const bool train = entry.path().parent_path().filename().string().starts_with("cam");
+      if (train && entry.path().stem() == "000000") return entry.path();
     }
     return {};
   }
@@ -118,11 +120,8 @@ TEST_F(ExitCode, AMissingCameraFolderIsLeftOutByName) {
 
 TEST_F(ExitCode, AFrameWithoutPicturesFailsAloneWith10) {
   const fs::path capture = copyOfSample();
-  std::string first;
   for (const auto& entry : fs::recursive_directory_iterator(capture / "images")) {
-    if (!entry.is_regular_file()) continue;
-    if (first.empty()) first = "000000";
-    if (entry.path().stem() == first) fs::resize_file(entry.path(), 20);
+    if (entry.is_regular_file() && entry.path().stem() == "000000") fs::resize_file(entry.path(), 20);
   }
   Words words =
       Words{"process", capture.string(), "--out", at("p.beam").string(), "--until", "surface"} + tiny();
@@ -162,6 +161,20 @@ TEST_F(ExitCode, AReadOnlyProjectCanBeLookedAtButNotRun) {
   EXPECT_THAT(run.err, HasSubstr("read-only"));
   EXPECT_EQ(beam({"run", at("p.beam").string(), "--until", "capture"}).code, 0);  // nothing to write
   fs::permissions(at("p.beam"), fs::perms(0755));
+}
+
+TEST_F(ExitCode, AFullDiskIsAStorageErrorAndCostsNothingThatWasFinished) {
+  const Words words = Words{"process", SampleHouse::capture().string(), "--out", at("p.beam").string()} +
+                      tiny() + Words{"--set", "surface.cap=2000"};
+  const Said full = Running(folder_.path(), words, 100000).wait();
+  EXPECT_EQ(full.code, 74) << full.err;
+  EXPECT_THAT(full.err, HasSubstr("error: cannot write"));
+  for (const auto& entry : fs::directory_iterator(at("p.beam") / "results")) {
+    EXPECT_NE(entry.path().filename().string().front(), '.');
+  }
+  const Said rest = beam(words);
+  EXPECT_EQ(rest.code, 0) << rest.err;
+  EXPECT_THAT(rest.err, HasSubstr("capture.import: reused"));
 }
 
 TEST_F(ExitCode, QuietLeavesOnlyWarningsAndErrors) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces made of dense, flat, nearly opaque Gaussians (methods 11.2): the closed forms of geometry and occlusion
-// hold on them.
+// Surfaces made of dense, flat, nearly opaque Gaussians (methods 11.2): the closed forms of geometry and
+// occlusion hold on them.
 #pragma once
 
 #include <cmath>

@@ -90,7 +90,9 @@ TEST(BakeMaterials, IsOneOnAConvexBodyUnderAnOpenSky) {
   const Camera camera = testing::cameraLookingAt({0, 0, 2}, {0, 0, 0}, kPixels, 1.5 * kPixels);
   const MaterialMaps m = bakeOne(blankView(camera), cloud, {.offset_m = 0.02});
   for (std::size_t i = 0; i < m.ao_weight.values.size(); ++i) {
-    if (m.ao_weight.values[i] > 0.5f) { EXPECT_NEAR(m.ambient_occlusion.values[i], 1, 0.03); }
+    if (m.ao_weight.values[i] > 0.5f) {
+      EXPECT_NEAR(m.ambient_occlusion.values[i], 1, 0.03);
+    }
   }
 }
 
@@ -151,7 +153,8 @@ TEST(BakeMaterials, StopsWhenAsked) {
   EXPECT_THROW(bakeMaterials({&view, 1}, floor(), uniformLight(), {}, *device, progress), Cancelled);
 }
 
-// Methods 11.6: photographs by eq. 12 of a ball of known colour, baked, fitted, and relit under another light.
+// Methods 11.6: photographs by eq. 12 of a ball of known colour, baked, fitted, and relit under another
+// light.
 class RoundTrip : public ::testing::Test {
  protected:
   static constexpr float kRoughness = 0.6f, kRadius = 0.4f;
@@ -161,7 +164,8 @@ class RoundTrip : public ::testing::Test {
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 64; ++x) {
         const vec3 d = directionFromLatLong({(x + 0.5f) / 64, (y + 0.5f) / 32});
-        map(x, y) = vec3(0.9f, 1.0f, 1.1f) * (0.6f + 0.4f * d.y) + 3.0f * std::exp(6 * (d.z - 1)) * vec3(1, 0.8f, 0.6f);
+        map(x, y) = vec3(0.9f, 1.0f, 1.1f) * (0.6f + 0.4f * d.y) +
+                    3.0f * std::exp(6 * (d.z - 1)) * vec3(1, 0.8f, 0.6f);
       }
     }
     return makeEnvironment(std::move(map));
@@ -173,13 +177,16 @@ class RoundTrip : public ::testing::Test {
     return e;
   }
 
-  static vec3 rhoAt(vec3 n) { return 0.35f + 0.2f * vec3(std::sin(4 * n.x), std::sin(3 * n.y + 1), std::cos(4 * n.z)); }
+  static vec3 rhoAt(vec3 n) {
+    return 0.35f + 0.2f * vec3(std::sin(4 * n.x), std::sin(3 * n.y + 1), std::cos(4 * n.z));
+  }
 
   static std::vector<Camera> cameras(int count, double turn) {
     std::vector<Camera> out;
     for (int i = 0; i < count; ++i) {
       const double y = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - y * y), phi = 2.39996323 * i + turn;
-      out.push_back(testing::cameraLookingAt(2.0 * dvec3(r * std::cos(phi), 0.8 * y, r * std::sin(phi)), dvec3(0), 64, 100));
+      out.push_back(testing::cameraLookingAt(2.0 * dvec3(r * std::cos(phi), 0.8 * y, r * std::sin(phi)),
+                                             dvec3(0), 64, 100));
     }
     return out;
   }
@@ -198,7 +205,8 @@ class RoundTrip : public ::testing::Test {
     for (int y = 0; y < 64; ++y) {
       for (int x = 0; x < 64; ++x) {
         const dvec3 o = world_from_camera.translation_m;
-        const dvec3 d = glm::normalize(world_from_camera.rotation * rayOf(camera.intrinsics, {x + 0.5, y + 0.5}));
+        const dvec3 d =
+            glm::normalize(world_from_camera.rotation * rayOf(camera.intrinsics, {x + 0.5, y + 0.5}));
         const double b = glm::dot(o, d), c = glm::dot(o, o) - kRadius * kRadius;
         if (b * b < c) continue;
         const vec3 n(glm::normalize(o + (-b - std::sqrt(b * b - c)) * d));
@@ -207,8 +215,9 @@ class RoundTrip : public ::testing::Test {
     }
     const FunctionTracer open([](const Ray&) { return false; });
     Progress progress;
-    const auto lit = integrateLight(points, {.cosine = 100, .environment = 100, .specular = 50, .roughness = kRoughness},
-                                    EnvironmentSampler(light), open, progress);
+    const auto lit =
+        integrateLight(points, {.cosine = 100, .environment = 100, .specular = 50, .roughness = kRoughness},
+                       EnvironmentSampler(light), open, progress);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const SurfacePoint& s = points[i];
       p.mask(s.x, s.y) = 255;
@@ -221,7 +230,8 @@ class RoundTrip : public ::testing::Test {
   static FrameView asView(const Camera& camera, const Picture& p) {
     FrameView v{"cam", camera, Image<u8vec3>(64, 64, u8vec3(0), Encoding::Srgb), p.mask};
     for (std::size_t i = 0; i < p.radiance.pixels.size(); ++i) {
-      v.photo.pixels[i] = u8vec3(glm::clamp(srgbFromLinear(p.radiance.pixels[i]), 0.0f, 1.0f) * 255.0f + 0.5f);
+      v.photo.pixels[i] =
+          u8vec3(glm::clamp(srgbFromLinear(p.radiance.pixels[i]), 0.0f, 1.0f) * 255.0f + 0.5f);
     }
     return v;
   }
@@ -234,8 +244,8 @@ TEST_F(RoundTrip, ReturnsTheColorAndTheRelitPicture) {
   for (const Camera& camera : cameras(12, 0)) views.push_back(asView(camera, photograph(camera, skyLight())));
   const auto device = makeCpuDevice();
   Progress progress;
-  const auto maps =
-      bakeMaterials(views, cloud, skyLight(), {.offset_m = 0.005, .roughness = kRoughness}, *device, progress);
+  const auto maps = bakeMaterials(views, cloud, skyLight(), {.offset_m = 0.005, .roughness = kRoughness},
+                                  *device, progress);
   const Materials materials =
       fitMaterials(maps, cloud, kRoughness, {.solver = "linear", .regularization = 0.01}, *device, progress);
   const PreparedLight evening(eveningLight());
@@ -250,14 +260,17 @@ TEST_F(RoundTrip, ReturnsTheColorAndTheRelitPicture) {
       const vec3 to_eye = -vec3(glm::normalize(inverse(camera.camera_from_world).rotation *
                                                rayOf(camera.intrinsics, {i % 64 + 0.5, i / 64 + 0.5})));
       if (g.alpha.pixels[i] < 0.98f || glm::dot(g.normal_world.pixels[i], to_eye) < 0.3f) continue;
-      rho_error += glm::dot(g.base_color.pixels[i] - truth.rho.pixels[i], g.base_color.pixels[i] - truth.rho.pixels[i]);
-      lit_error += glm::dot(relit.pixels[i] - truth.radiance.pixels[i], relit.pixels[i] - truth.radiance.pixels[i]);
+      rho_error += glm::dot(g.base_color.pixels[i] - truth.rho.pixels[i],
+                            g.base_color.pixels[i] - truth.rho.pixels[i]);
+      lit_error +=
+          glm::dot(relit.pixels[i] - truth.radiance.pixels[i], relit.pixels[i] - truth.radiance.pixels[i]);
       lit += glm::dot(truth.radiance.pixels[i], truth.radiance.pixels[i]);
       ++count;
     }
   }
   ASSERT_GT(count, 1000);
-  std::printf("rho rmse %g relit relative %g\n", std::sqrt(rho_error / (3 * count)), std::sqrt(lit_error / lit));
+  std::printf("rho rmse %g relit relative %g\n", std::sqrt(rho_error / (3 * count)),
+              std::sqrt(lit_error / lit));
   EXPECT_LT(std::sqrt(rho_error / (3 * count)), 0.015);
   EXPECT_LT(std::sqrt(lit_error / lit), 0.03);
 }

@@ -41,9 +41,10 @@ std::vector<LightIntegrals> integrate(std::span<const SurfacePoint> points, Ligh
 }
 
 LightIntegrals many(const SurfacePoint& p, float roughness, const Environment& light, const Tracer& tracer) {
-  return integrate(std::vector{p}, {.cosine = 8000, .environment = 8000, .specular = 8000, .offset_m = 0,
-                                    .roughness = roughness},
-                   light, tracer)[0];
+  return integrate(
+      std::vector{p},
+      {.cosine = 8000, .environment = 8000, .specular = 8000, .offset_m = 0, .roughness = roughness}, light,
+      tracer)[0];
 }
 
 struct FurnaceRow {
@@ -82,7 +83,8 @@ TEST(LightIntegrals, GiveTheClosedCaseOfBaseColor) {
 TEST(LightIntegrals, DoNotDependOnTheSplitOfStrategies) {
   const SurfacePoint p = pointSeenAt(40);
   const auto with = [&](int c, int e, int s) {
-    return integrate(std::vector{p}, {.cosine = c, .environment = e, .specular = s, .offset_m = 0, .roughness = 0.4f},
+    return integrate(std::vector{p},
+                     {.cosine = c, .environment = e, .specular = s, .offset_m = 0, .roughness = 0.4f},
                      windowLight(), openSky())[0];
   };
   const LightIntegrals reference = with(100000, 100000, 100000);
@@ -94,7 +96,8 @@ TEST(LightIntegrals, DoNotDependOnTheSplitOfStrategies) {
 
 TEST(LightIntegrals, ScaleWithTheLight) {
   const SurfacePoint p = pointSeenAt(20);
-  const LightIntegrals one = many(p, 0.5f, uniformLight(1), openSky()), three = many(p, 0.5f, uniformLight(3), openSky());
+  const LightIntegrals one = many(p, 0.5f, uniformLight(1), openSky()),
+                       three = many(p, 0.5f, uniformLight(3), openSky());
   EXPECT_NEAR(three.diffuse.x, 3 * one.diffuse.x, 1e-3);
   EXPECT_NEAR(three.specular.x, 3 * one.specular.x, 1e-3);
 }
@@ -119,7 +122,8 @@ TEST(AmbientOcclusion, IsAHalfAtTheFootOfAnInfiniteWall) {
 
 TEST(AmbientOcclusion, FollowsAWallOfFiniteHeight) {
   const float h = 1, d = 0.7f;
-  const FunctionTracer wall([=](const Ray& r) { return r.direction.x > 0 && r.direction.y * d < h * r.direction.x; });
+  const FunctionTracer wall(
+      [=](const Ray& r) { return r.direction.x > 0 && r.direction.y * d < h * r.direction.x; });
   EXPECT_NEAR(many(pointSeenAt(0), 0.5f, uniformLight(), wall).sky, (1 + d / std::hypot(d, h)) / 2, 0.005);
 }
 
@@ -128,7 +132,8 @@ TEST(AmbientOcclusion, FollowsASphereOverhead) {
   const FunctionTracer sphere([=](const Ray& r) {
     return r.direction.y > 0 && height * height * (1 - r.direction.y * r.direction.y) < radius * radius;
   });
-  EXPECT_NEAR(many(pointSeenAt(0), 0.5f, uniformLight(), sphere).sky, 1 - (radius * radius) / (height * height), 0.005);
+  EXPECT_NEAR(many(pointSeenAt(0), 0.5f, uniformLight(), sphere).sky,
+              1 - (radius * radius) / (height * height), 0.005);
 }
 
 TEST(AmbientOcclusion, IsSineSquaredInAnOpenCone) {
@@ -164,19 +169,21 @@ TEST(RayOffset, StartsTheRayAlongTheNormal) {
   integrate(std::vector{pointSeenAt(0)}, {.offset_m = 0.05f}, uniformLight(), probe);
 }
 
-// A panorama with one bright texel lights the side of a ball that the data sets' own formula names (contract 4):
-// d = (cos el cos az, cos el sin az, sin el), az = pi - 2 pi u, el = pi/2 - pi v in a capture with +Z up.
+// A panorama with one bright texel lights the side of a ball that the data sets' own formula names (contract
+// 4): d = (cos el cos az, cos el sin az, sin el), az = pi - 2 pi u, el = pi/2 - pi v in a capture with +Z up.
 TEST(OneBrightTexel, LightsTheSideThatTheCaptureStates) {
   const dmat3 world_from_capture = worldFromCapture(UpAxis::PlusZ);
   for (const ivec2& texel : {ivec2(3, 10), ivec2(20, 5), ivec2(31, 8), ivec2(50, 12)}) {
     Image<vec3> map(64, 32, vec3(0.01f));
     map(texel.x, texel.y) = vec3(500);
     const double az = kPi - 2 * kPi * (texel.x + 0.5) / 64, el = kPi / 2 - kPi * (texel.y + 0.5) / 32;
-    const vec3 lamp(world_from_capture * dvec3(std::cos(el) * std::cos(az), std::cos(el) * std::sin(az), std::sin(el)));
+    const vec3 lamp(world_from_capture *
+                    dvec3(std::cos(el) * std::cos(az), std::cos(el) * std::sin(az), std::sin(el)));
     std::vector<SurfacePoint> ball;
     const RandomStream random(5);
     for (std::uint64_t i = 0; i < 500; ++i) {
-      const vec3 n = glm::normalize(vec3(random.normal(3 * i), random.normal(3 * i + 1), random.normal(3 * i + 2)));
+      const vec3 n =
+          glm::normalize(vec3(random.normal(3 * i), random.normal(3 * i + 1), random.normal(3 * i + 2)));
       ball.push_back({static_cast<int>(i), 0, n, n, n});
     }
     const auto lit = integrate(ball, {}, makeEnvironment(map), openSky());

@@ -59,7 +59,8 @@ TEST(PreparedLight, GivesPiEverywhereUnderAUniformSky) {
   const PreparedLight light(uniformLight());
   for (int i = 0; i < 50; ++i) {
     EXPECT_NEAR(light.irradiance(direction(i), 0).y, kPi, 0.01);
-    for (const float r : {0.0f, 0.13f, 0.5f, 1.0f}) EXPECT_NEAR(light.prefiltered(direction(i), r, 0).y, 1, 1e-3);
+    for (const float r : {0.0f, 0.13f, 0.5f, 1.0f})
+      EXPECT_NEAR(light.prefiltered(direction(i), r, 0).y, 1, 1e-3);
     EXPECT_NEAR(light.background(direction(i), 0.3f).y, 1, 1e-5);
   }
 }
@@ -105,7 +106,8 @@ TEST(PreparedLight, PrefiltersWithTheLobeOfTheBrdf) {
         sum += radianceFrom(e, frame.toWorld(l)).y * l.z;
         weight += l.z;
       }
-      EXPECT_NEAR(light.prefiltered(n, roughness, 0).y, sum / weight, 0.04 * sum / weight) << roughness << " " << angle;
+      EXPECT_NEAR(light.prefiltered(n, roughness, 0).y, sum / weight, 0.04 * sum / weight)
+          << roughness << " " << angle;
     }
   }
 }
@@ -135,7 +137,8 @@ TEST(SplitSum, GivesTheFurnaceValuesOfTheSameBrdf) {
     constexpr float kAngles[4] = {0, 30, 60, 80};
     for (int a = 0; a < 4; ++a) {
       const vec2 ab = splitSum(std::cos(kAngles[a] * kPi / 180), row.roughness);
-      EXPECT_NEAR(kF0 * ab.x + ab.y, row.specular[a], 0.02 * row.specular[a] + 2e-4) << row.roughness << " " << a;
+      EXPECT_NEAR(kF0 * ab.x + ab.y, row.specular[a], 0.02 * row.specular[a] + 2e-4)
+          << row.roughness << " " << a;
     }
   }
 }
@@ -196,7 +199,8 @@ TEST(Shade, ScalesWithExposure) {
   const Camera camera = frontCamera();
   const PreparedLight light(uniformLight());
   const GBuffer g = flat(camera, 1, vec3(0.5f), 1, 0.5f);
-  EXPECT_NEAR(shade(g, camera, light, {.exposure = 2})(8, 8).x, 2 * shade(g, camera, light, {})(8, 8).x, 1e-5);
+  EXPECT_NEAR(shade(g, camera, light, {.exposure = 2})(8, 8).x, 2 * shade(g, camera, light, {})(8, 8).x,
+              1e-5);
 }
 
 TEST(Shade, RefusesAGBufferWithoutMaterials) {
@@ -235,8 +239,12 @@ TEST_F(SphereGBuffer, HoldsTheSphere) {
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x) {
       const float alpha = g.alpha(x, y);
-      if (alpha < 1 / 255.0f) { EXPECT_EQ(g.normal_world(x, y), vec3(0)); }
-      if (alpha < 0.5f) { EXPECT_EQ(g.depth_m(x, y), 0); }
+      if (alpha < 1 / 255.0f) {
+        EXPECT_EQ(g.normal_world(x, y), vec3(0));
+      }
+      if (alpha < 0.5f) {
+        EXPECT_EQ(g.depth_m(x, y), 0);
+      }
       const dvec3 ray = rayOf(testing_camera.intrinsics, {x + 0.5, y + 0.5});
       const dvec3 o = world_from_camera.translation_m, d = glm::normalize(world_from_camera.rotation * ray);
       const double b = glm::dot(o, d), c = glm::dot(o, o) - 0.36 * 0.36;  // away from the rim
@@ -275,8 +283,8 @@ TEST_F(SphereGBuffer, IsBrightestWhereTheSunStands) {
   const PreparedLight light(sun(glm::normalize(vec3(1, 0, 1))));
   const auto brightestAt = [&](float yaw) {
     const Image<vec3> out = shade(g, testing_camera, light, {.yaw_rad = yaw});
-    const auto best = std::max_element(out.pixels.begin(), out.pixels.end(),
-                                       [](vec3 a, vec3 b) { return a.y < b.y; });
+    const auto best =
+        std::max_element(out.pixels.begin(), out.pixels.end(), [](vec3 a, vec3 b) { return a.y < b.y; });
     return g.normal_world.pixels[static_cast<std::size_t>(best - out.pixels.begin())];
   };
   EXPECT_GT(brightestAt(0).x, 0.4f);

@@ -20,8 +20,8 @@ class MaterialFit : public ::testing::Test {
     testing::addSphere(cloud, vec3(0), 0.4f, 250);
     for (int i = 0; i < 24; ++i) {
       const double y = 1 - (2 * i + 1.0) / 24, r = std::sqrt(1 - y * y), phi = 2.39996323 * i;
-      cameras.push_back(
-          testing::cameraLookingAt(2.0 * dvec3(r * std::cos(phi), 0.9 * y, r * std::sin(phi)), dvec3(0), 48, 80));
+      cameras.push_back(testing::cameraLookingAt(2.0 * dvec3(r * std::cos(phi), 0.9 * y, r * std::sin(phi)),
+                                                 dvec3(0), 48, 80));
     }
   }
 
@@ -94,7 +94,8 @@ TEST_F(MaterialFit, GivesConstantMapsBackExactly) {
   }
   const Materials found = fit(mapsOf(truth), {.solver = "linear", .linear_iterations = 5});
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    for (int k = 0; k < kShCount * 3; ++k) EXPECT_NEAR(found.base_color.of(i)[k], truth.base_color.of(i)[k], 1e-3);
+    for (int k = 0; k < kShCount * 3; ++k)
+      EXPECT_NEAR(found.base_color.of(i)[k], truth.base_color.of(i)[k], 1e-3);
     EXPECT_NEAR(found.ambient_occlusion.of(i)[0], 1.2f, 1e-3);
   }
   EXPECT_EQ(found.roughness, std::vector<float>(cloud.size(), 0.5f));
@@ -106,7 +107,8 @@ TEST_F(MaterialFit, RecoversPlantedCoefficients) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     for (int k = 0; k < 4; ++k) {  // degree 1: 24 cameras on one side of each splat determine it
       const float size = k == 0 ? 0.4f : 0.1f;
-      for (int c = 0; c < 3; ++c) truth.base_color.of(i)[k * 3 + c] = size * random.normal(i * 64 + k * 4 + c);
+      for (int c = 0; c < 3; ++c)
+        truth.base_color.of(i)[k * 3 + c] = size * random.normal(i * 64 + k * 4 + c);
       truth.ambient_occlusion.of(i)[k] = size * random.normal(i * 64 + k * 4 + 3);
     }
   }
@@ -116,7 +118,8 @@ TEST_F(MaterialFit, RecoversPlantedCoefficients) {
 
 TEST_F(MaterialFit, LendsUnseenGaussiansTheColorOfTheirNeighbours) {
   Materials truth = blank();
-  for (std::size_t i = 0; i < cloud.size(); ++i) truth.base_color.of(i)[0] = cloud.position_m[i].y > 0 ? 1.0f : -1.0f;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    truth.base_color.of(i)[0] = cloud.position_m[i].y > 0 ? 1.0f : -1.0f;
   std::vector<MaterialMaps> maps = mapsOf(truth);
   testing::addSplat(cloud, {0, 0.3f, 0}, {0, 1, 0}, 0.02f, 0.002f);  // buried under the top
   const Materials found = fit(maps, {.solver = "linear", .linear_iterations = 10});

@@ -57,7 +57,8 @@ TEST(CosineDirection, HasTheMomentsOfACosine) {
   EXPECT_NEAR(square / n, 0.5, 1e-3);
 }
 
-// The mean of 1 / pdf over the drawn directions is the solid angle that they cover; with g / pdf, the integral of g.
+// The mean of 1 / pdf over the drawn directions is the solid angle that they cover; with g / pdf, the
+// integral of g.
 TEST(VisibleNormal, HasTheDensityThatTheBrdfStates) {
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     for (const float cosine : {1.0f, 0.5f, 0.2f}) {
@@ -84,7 +85,8 @@ TEST(Reflectance, IsReciprocal) {
     vec3 a = randomDirection(random, 2 * i), b = randomDirection(random, 2 * i + 1);
     a.z = std::abs(a.z);
     b.z = std::abs(b.z);
-    const float ab = reflectance({0, 0, 1}, a, b, 0.3f).specular, ba = reflectance({0, 0, 1}, b, a, 0.3f).specular;
+    const float ab = reflectance({0, 0, 1}, a, b, 0.3f).specular,
+                ba = reflectance({0, 0, 1}, b, a, 0.3f).specular;
     EXPECT_NEAR(ab, ba, 1e-4f * (1 + ab));
   }
 }

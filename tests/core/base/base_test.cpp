@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Laws of the ground floor: fields, progress, parallel work, random numbers, digests.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "core/base/fields_json.h"
+#include "core/base/hash.h"
+#include "core/base/parallel.h"
+#include "core/base/progress.h"
+#include "core/base/rng.h"
+
+namespace beam {
+namespace {
+
+struct Options {
+  int steps = 10;
+  double weight = 0.5;
+  bool on = false;
+  std::string kind = "a";
+};
+void describe(Fields& f, Options& o) {
+  f.field({.name = "steps", .label = "Steps", .help = "", .min = 1, .max = 100}, o.steps);
+  f.group("inner",
+          [&] { f.field({.name = "weight", .label = "Weight", .help = "", .min = 0, .max = 1}, o.weight); });
+  f.field({.name = "on", .label = "On", .help = ""}, o.on);
+  f.field({.name = "kind", .label = "Kind", .help = "", .choices = {"a", "b"}}, o.kind);
+}
+
+bool set(Options& o, const std::string& name, const std::string& text) {
+  FieldSetter setter(name, parseFieldValue(text));
+  describe(setter, o);
+  return setter.found;
+}
+
+TEST(Fields, AreListedInOrderWithTheirGroups) {
+  std::vector<std::string> names;
+  for (const Field& f : fieldsOf(Options{})) names.push_back(f.info.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"steps", "inner.weight", "on", "kind"}));
+}
+
+TEST(Fields, TakeValuesByNameAndKeepThemInRange) {
+  Options o;
+  EXPECT_TRUE(set(o, "inner.weight", "0.25"));
+  EXPECT_TRUE(set(o, "steps", "7"));
+  EXPECT_TRUE(set(o, "on", "true"));
+  EXPECT_TRUE(set(o, "kind", "b"));
+  EXPECT_EQ(o.weight, 0.25);
+  EXPECT_EQ(o.steps, 7);
+  EXPECT_EQ(o.kind, "b");
+  EXPECT_FALSE(set(o, "weight", "1"));
+  for (const auto& [name, text] :
+       {std::pair{"steps", "0"}, {"steps", "1.5"}, {"inner.weight", "2"}, {"on", "1"}, {"kind", "c"}}) {
+    EXPECT_THROW(set(o, name, text), Error) << name << " " << text;
+  }
+  EXPECT_EQ(o.steps, 7);
+}
+
+TEST(Fields, TheNearestNameIsFoundForATypingError) {
+  EXPECT_EQ(nearestName("itertions", {"cap", "iterations", "seed"}), "iterations");
+}
+
+TEST(Fields, JsonHoldsEveryValue) {
+  const std::string json = fieldsToJson(fieldsOf(Options{}));
+  EXPECT_THAT(json, ::testing::HasSubstr("\"inner.weight\": 0.5"));
+  EXPECT_THROW(parseFieldValue("[1]"), Error);
+}
+
+TEST(Progress, PartsCoverTheirShareAndReportsNeverGoBack) {
+  std::vector<double> seen;
+  Progress p({}, [&](const ProgressReport& r) { seen.push_back(r.fraction); });
+  for (int i = 0; i < 2; ++i) {
+    Progress part = p.part(0.5, "half");
+    part.expect(4);
+    for (int k = 0; k < 4; ++k) part.step();
+  }
+  ASSERT_GE(seen.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  EXPECT_NEAR(seen.back(), 1.0, 1e-9);
+}
+
+TEST(Progress, ToReportIsToCheck) {
+  std::stop_source stop;
+  Progress p(stop.get_token());
+  p.expect(3);
+  p.step();
+  stop.request_stop();
+  EXPECT_THROW(p.step(), Cancelled);
+  EXPECT_TRUE(p.stopRequested());
+}
+
+double sumOfRoots(int threads) {
+  setThreadCount(threads);
+  const double sum = parallelReduce(
+      100001, 97, 0.0,
+      [](std::size_t begin, std::size_t end) {
+        double s = 0;
+        for (std::size_t i = begin; i < end; ++i) s += std::sqrt(static_cast<double>(i));
+        return s;
+      },
+      [](double a, double b) { return a + b; });
+  setThreadCount(0);
+  return sum;
+}
+
+TEST(Parallel, ReductionsGiveTheSameBitsForAnyNumberOfThreads) { EXPECT_EQ(sumOfRoots(1), sumOfRoots(2)); }
+
+TEST(Parallel, EveryIndexIsVisitedOnceAndErrorsArrive) {
+  std::vector<std::atomic<int>> seen(1000);
+  parallelFor(seen.size(), 7, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) ++seen[i];
+  });
+  for (const auto& s : seen) EXPECT_EQ(s, 1);
+  EXPECT_THROW(parallelFor(10, 1, [](std::size_t, std::size_t) { throw Error(Error::Kind::Data, "x"); }),
+               Error);
+}
+
+TEST(Random, DependsOnEveryKeyAndIsEven) {
+  EXPECT_NE(RandomStream(1, 2, 3).bits(0), RandomStream(1, 3, 2).bits(0));
+  EXPECT_NE(RandomStream(1, 2).bits(0), RandomStream(1, 2).bits(1));
+  EXPECT_EQ(RandomStream(1, 2).bits(5), RandomStream(1, 2).bits(5));
+  const RandomStream r(9);
+  double mean = 0, normal = 0, square = 0;
+  for (int i = 0; i < 20000; ++i) {
+    mean += r.uniform(i) / 20000;
+    normal += r.normal(50000 + i) / 20000;
+    square += r.normal(50000 + i) * r.normal(50000 + i) / 20000;
+    EXPECT_LT(r.below(i, 7), 7u);
+  }
+  EXPECT_NEAR(mean, 0.5, 0.01);
+  EXPECT_NEAR(normal, 0, 0.03);
+  EXPECT_NEAR(square, 1, 0.05);
+}
+
+TEST(Digest, OfAStreamIsThatOfTheWholeAndReadsBack) {
+  Hasher h;
+  h.add("one ");
+  h.add("two");
+  EXPECT_EQ(h.digest(), digestOf("one two"));
+  EXPECT_EQ(parseDigest(h.digest().hex()), h.digest());
+  EXPECT_THROW(parseDigest("xyz"), Error);
+}
+
+}  // namespace
+}  // namespace beam
