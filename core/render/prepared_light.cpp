@@ -137,8 +137,8 @@ vec3 convolvedAt(const Image<vec3>& source, const Texels& texels, vec3 direction
   return weight > 0 ? vec3(sum / weight) : lookUp(source, direction);
 }
 
-// The prefiltered radiance of one roughness; the lobe of n = v = l's mirror (Karis 2013): D(h) (n.l). Texels are
-// kept below half the lobe's width.
+// The prefiltered radiance of one roughness; the lobe of n = v = l's mirror (Karis 2013): D(h) (n.l). Texels
+// are kept below half the lobe's width.
 Image<vec3> prefilteredLevel(const Image<vec3>& panorama, float roughness) {
   const float alpha = ggxAlpha(roughness);
   const int out = roughness < 0.15f ? 256 : roughness < 0.35f ? 128 : 64;

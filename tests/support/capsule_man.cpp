@@ -65,12 +65,7 @@ void tangents(vec3 n, vec3& t, vec3& b) {
   b = glm::cross(n, t);
 }
 
-struct SkinPoint {
-  vec3 position, normal;
-  int part;
-};
-
-SkinPoint pointOn(int part, Sequence& random) {
+CapsulePoint pointOn(int part, Sequence& random) {
   const Capsule& c = kMan[part];
   const vec3 axis = c.b - c.a;
   const float length = glm::length(axis), side = kTurn * c.radius * length,
@@ -88,27 +83,8 @@ SkinPoint pointOn(int part, Sequence& random) {
   return {(up > 0 ? c.b : c.a) + n * c.radius, n, part};
 }
 
-// Uniform over the outer surface.
-std::vector<SkinPoint> skin(std::size_t count, std::uint64_t seed) {
-  float area[kParts], sum = 0;
-  for (int k = 0; k < kParts; ++k) {
-    const Capsule& c = kMan[k];
-    area[k] = sum += kTurn * c.radius * (glm::length(c.b - c.a) + 2 * c.radius);
-  }
-  Sequence random(seed);
-  std::vector<SkinPoint> points;
-  while (points.size() < count) {
-    const float at = random.uniform() * sum;
-    const int part = static_cast<int>(std::lower_bound(area, area + kParts - 1, at) - area);
-    const SkinPoint p = pointOn(part, random);
-    const auto holds = [&](const Capsule& c) { return &c != &kMan[part] && distanceTo(c, p.position) < 0; };
-    if (std::none_of(kMan, kMan + kParts, holds)) points.push_back(p);
-  }
-  return points;
-}
-
 // A pattern of coloured blobs, so that an optimiser has something to fit.
-vec3 colorAt(const SkinPoint& s) {
+vec3 colorAt(const CapsulePoint& s) {
   const vec3 p = s.position;
   const float k = static_cast<float>(s.part) * 0.7f;
   return vec3(0.5f) + 0.4f * vec3(std::sin(9 * p.y + k) * std::cos(30 * p.x),
@@ -117,14 +93,32 @@ vec3 colorAt(const SkinPoint& s) {
 
 }  // namespace
 
-GaussianCloud capsuleMan(std::size_t count, const CapsuleManSizes& sizes) {
+std::vector<CapsulePoint> capsulePoints(std::size_t count, std::uint64_t seed) {
+  float area[kParts], sum = 0;
+  for (int k = 0; k < kParts; ++k) {
+    const Capsule& c = kMan[k];
+    area[k] = sum += kTurn * c.radius * (glm::length(c.b - c.a) + 2 * c.radius);
+  }
+  Sequence random(seed);
+  std::vector<CapsulePoint> points;
+  while (points.size() < count) {
+    const float at = random.uniform() * sum;
+    const int part = static_cast<int>(std::lower_bound(area, area + kParts - 1, at) - area);
+    const CapsulePoint p = pointOn(part, random);
+    const auto holds = [&](const Capsule& c) { return &c != &kMan[part] && distanceTo(c, p.position) < 0; };
+    if (std::none_of(kMan, kMan + kParts, holds)) points.push_back(p);
+  }
+  return points;
+}
+
+GaussianCloud capsuleCloud(std::size_t count, float sigma_m) {
   constexpr std::uint64_t kSeed = 7;
   Sequence random(kSeed + 99), noise(5);
   const float grow = std::sqrt(140000.0f / static_cast<float>(count));
-  const auto spread = [&](float size_mm) { return size_mm * 1e-3f * std::exp(0.25f * random.normal()); };
+  const auto spread = [&](float size_m) { return size_m * std::exp(0.25f * random.normal()); };
   GaussianCloud cloud;
   cloud.color = ShBlock(count, 3);
-  for (const SkinPoint& s : skin(count, kSeed)) {
+  for (const CapsulePoint& s : capsulePoints(count, kSeed)) {
     vec3 jitter, t, b;
     for (int k = 0; k < 3; ++k) jitter[k] = random.normal();
     const vec3 n = glm::normalize(s.normal + 0.12f * jitter);
@@ -132,7 +126,7 @@ GaussianCloud capsuleMan(std::size_t count, const CapsuleManSizes& sizes) {
     const float turn = kTurn * random.uniform();
     const vec3 first = t * std::cos(turn) + b * std::sin(turn);
     vec3 scale;
-    for (int k = 0; k < 3; ++k) scale[k] = spread(k < 2 ? sizes.sigma_mm * grow : sizes.thin_mm);
+    for (int k = 0; k < 3; ++k) scale[k] = spread(k < 2 ? sigma_m * grow : sigma_m / 6);
     float* sh = cloud.color.of(cloud.size());
     const vec3 color = colorAt(s);
     for (int c = 0; c < 3; ++c) sh[c] = (color[c] - 0.5f) / kShC0;
@@ -145,7 +139,7 @@ GaussianCloud capsuleMan(std::size_t count, const CapsuleManSizes& sizes) {
   return cloud;
 }
 
-Camera capsuleManCamera(int width, int height) {
+Camera capsuleCamera(int width, int height) {
   Camera c;
   c.width = width;
   c.height = height;
@@ -156,10 +150,10 @@ Camera capsuleManCamera(int width, int height) {
   return c;
 }
 
-std::vector<Ray> capsuleManRays(int points, int rays_per_point, float offset_m) {
+std::vector<Ray> capsuleRays(std::size_t points, int rays_per_point, float offset_m) {
   Sequence random(11);
   std::vector<Ray> rays;
-  for (const SkinPoint& s : skin(static_cast<std::size_t>(points), 123)) {
+  for (const CapsulePoint& s : capsulePoints(points, 123)) {
     vec3 t, b;
     tangents(s.normal, t, b);
     for (int i = 0; i < rays_per_point; ++i) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/render/tracer.h"
@@ -13,18 +14,22 @@
 
 namespace beam::testing {
 
-// `sigma_mm`: median standard deviation of the two larger axes at 140,000 Gaussians; it grows with
-// 1 / sqrt(count), so that coverage stays. Sizes are log-normal with 25 %, opacities lie in [0.5, 0.99).
-struct CapsuleManSizes {
-  float sigma_mm = 6;
-  float thin_mm = 1;
+struct CapsulePoint {
+  vec3 position, normal;
+  int part;
 };
-GaussianCloud capsuleMan(std::size_t count, const CapsuleManSizes& sizes = {});
+// Uniform on the outer surface.
+std::vector<CapsulePoint> capsulePoints(std::size_t count, std::uint64_t seed);
+
+// `sigma_m`: median standard deviation of the two larger axes at 140,000 Gaussians, growing with 1 /
+// sqrt(count) so that coverage stays; the thin axis has a sixth of it. Sizes are log-normal with 25 %,
+// opacities lie in [0.5, 0.99).
+GaussianCloud capsuleCloud(std::size_t count, float sigma_m = 0.006f);
 
 // From the front, 3 m away; the figure fills 85 % of the height.
-Camera capsuleManCamera(int width, int height);
+Camera capsuleCamera(int width, int height);
 
-// `rays_per_point` cosine-distributed directions from `points` surface points, `offset_m` off the surface.
-std::vector<Ray> capsuleManRays(int points, int rays_per_point, float offset_m);
+// `rays_per_point` cosine-distributed directions from surface points, `offset_m` off the surface.
+std::vector<Ray> capsuleRays(std::size_t points, int rays_per_point, float offset_m);
 
 }  // namespace beam::testing

@@ -5,7 +5,7 @@
 #include "core/base/parallel.h"
 #include "core/render/cpu/cpu_rasterizer.h"
 #include "core/render/cpu/cpu_training_ops.h"
-#include "core/render/cpu/embree_tracer.h"
+#include "core/render/cpu/splat_bvh.h"
 #include "core/render/device.h"
 #include "hwy/highway.h"
 
@@ -62,7 +62,7 @@ class CpuDevice final : public ComputeDevice {
     return makeCpuRasterizer(desc);
   }
   std::unique_ptr<Tracer> newTracer(const TracerDesc& desc, const GaussianCloud& cloud) override {
-    return makeEmbreeTracer(desc, cloud);
+    return makeSplatBvhTracer(desc, cloud);
   }
   std::unique_ptr<TrainingOps> newTrainingOps() override { return makeCpuTrainingOps(); }
 };

@@ -1,38 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/cpu/cpu_training_ops.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace beam {
 namespace {
 
-constexpr std::size_t kRowGrain = 32;
+constexpr int kBandRows = 96;  // 21 rows of overlap against cores that wait
 constexpr std::size_t kAdamGrain = 16384;
-
-SsimRows rowsOf(int width) {
-  SsimRows s{width, (width + 15) / 16 * 16 + 2 * kSsimPad + 16, {}};
-  double sum = 0;
-  for (int i = -kSsimReach; i <= kSsimReach; ++i) sum += std::exp(-i * i / 4.5);
-  for (int i = 0; i <= kSsimReach; ++i) s.window[i] = static_cast<float>(std::exp(-i * i / 4.5) / sum);
-  return s;
-}
 
 class CpuTrainingOps final : public TrainingOps {
  public:
   PhotometricLoss photometric(const Planes& image, const Planes& target, float lambda,
                               Planes& gradient) override {
+    if (image.width != target.width || image.height != target.height || image.channels != target.channels ||
+        image.empty()) {
+      throw Error(
+          Error::Kind::Bug,
+          fmt::format("the loss compares pictures of one size, not {}x{}x{} with {}x{}x{}", image.width,
+                      image.height, image.channels, target.width, target.height, target.channels));
+    }
     prepare(image, gradient);
     const double values = static_cast<double>(image.planeSize()) * image.channels;
-    const float l1_scale = static_cast<float>((1 - lambda) / values),
-                ssim_scale = static_cast<float>(-lambda / values);
+    const auto bands = static_cast<std::size_t>((image.height + kBandRows - 1) / kBandRows);
+    parallelFor(bands * static_cast<std::size_t>(image.channels), 1, [&](std::size_t piece, std::size_t) {
+      const int c = static_cast<int>(piece / bands), begin = static_cast<int>(piece % bands) * kBandRows;
+      SsimChannel channel{.image = image.plane(c),
+                          .target = target.plane(c),
+                          .gradient = gradient.plane(c),
+                          .width = image.width,
+                          .height = image.height,
+                          .window = {},
+                          .l1_scale = static_cast<float>((1 - lambda) / values),
+                          .ssim_scale = static_cast<float>(-lambda / values),
+                          .row_ssim = &row_ssim_[static_cast<std::size_t>(c) * image.height],
+                          .row_l1 = &row_l1_[static_cast<std::size_t>(c) * image.height]};
+      std::copy(window_.begin(), window_.end(), channel.window);
+      ssimBand(channel, begin, std::min(begin + kBandRows, image.height), &scratch_[piece * piece_floats_]);
+    });
     PhotometricLoss loss;
-    for (int c = 0; c < image.channels; ++c) {
-      channel(image.plane(c), target.plane(c), l1_scale, ssim_scale, gradient.plane(c));
-      for (int y = 0; y < image.height; ++y) loss.ssim += row_ssim_[y], loss.l1 += row_l1_[y];
-    }
+    for (const double v : row_ssim_) loss.ssim += v;
+    for (const double v : row_l1_) loss.l1 += v;
     loss.ssim /= values;
     loss.l1 /= values;
     loss.total = (1 - lambda) * loss.l1 + lambda * (1 - loss.ssim);
@@ -42,6 +57,13 @@ class CpuTrainingOps final : public TrainingOps {
   void adam(GaussianBuffers& parameters, const GaussianBuffers& gradients, GaussianBuffers& first_moment,
             GaussianBuffers& second_moment, std::span<const AdamPlane> planes, const AdamSettings& settings,
             int step) override {
+    if (static_cast<int>(planes.size()) != parameters.planes() ||
+        gradients.values.size() != parameters.values.size() ||
+        first_moment.values.size() != parameters.values.size() ||
+        second_moment.values.size() != parameters.values.size()) {
+      throw Error(Error::Kind::Bug, fmt::format("Adam needs four buffers of one size and {} planes, not {}",
+                                                parameters.planes(), planes.size()));
+    }
     const double correction1 = 1 - std::pow(static_cast<double>(settings.beta1), step);
     const double correction2 = 1 - std::pow(static_cast<double>(settings.beta2), step);
     const std::size_t pieces = (parameters.stride + kAdamGrain - 1) / kAdamGrain;
@@ -63,61 +85,33 @@ class CpuTrainingOps final : public TrainingOps {
   }
 
  private:
+  // Eleven taps of a Gaussian of standard deviation 1.5, normalised.
+  static std::array<float, 6> windowOf() {
+    std::array<float, 6> w{};
+    double sum = 0;
+    for (int i = -5; i <= 5; ++i) sum += std::exp(-i * i / 4.5);
+    for (int i = 0; i <= 5; ++i) w[i] = static_cast<float>(std::exp(-i * i / 4.5) / sum);
+    return w;
+  }
+
   void prepare(const Planes& image, Planes& gradient) {
-    if (gradient.width != image.width || gradient.height != image.height ||
-        gradient.channels != image.channels) {
-      gradient = Planes(image.width, image.height, image.channels);
-    }
-    if (rows_.width == image.width && height_ == image.height) return;
-    rows_ = rowsOf(image.width);
-    height_ = image.height;
-    const std::size_t plane = static_cast<std::size_t>(rows_.stride) * (height_ + 2 * kSsimReach);
-    for (auto& p : blurred_) p.assign(plane, 0.0f);
-    for (auto& p : maps_) p.assign(plane, 0.0f);
-    const std::size_t bands = (static_cast<std::size_t>(height_) + kRowGrain - 1) / kRowGrain;
-    scratch_.assign(bands * 5 * rows_.stride, 0.0f);
-    row_ssim_.assign(height_, 0);
-    row_l1_.assign(height_, 0);
+    const auto same = [&](const Planes& p) {
+      return p.width == image.width && p.height == image.height && p.channels == image.channels;
+    };
+    if (!same(gradient)) gradient = Planes(image.width, image.height, image.channels);
+    if (width_ == image.width && height_ == image.height && channels_ == image.channels) return;
+    width_ = image.width, height_ = image.height, channels_ = image.channels;
+    const std::size_t bands = (height_ + kBandRows - 1) / kBandRows;
+    piece_floats_ = ssimScratchFloats(width_);
+    scratch_.assign(bands * channels_ * piece_floats_, 0.0f);
+    row_ssim_.assign(static_cast<std::size_t>(height_) * channels_, 0);
+    row_l1_.assign(row_ssim_.size(), 0);
   }
 
-  template <class P>
-  auto* rowOf(P& plane, int y) const {
-    return plane.data() + static_cast<std::size_t>(y + kSsimReach) * rows_.stride + kSsimPad;
-  }
-
-  void channel(const float* image, const float* target, float l1_scale, float ssim_scale, float* gradient) {
-    const int w = rows_.width;
-    const auto rows = static_cast<std::size_t>(height_);
-    const auto scratchOf = [&](std::size_t y) { return &scratch_[y / kRowGrain * 5 * rows_.stride]; };
-    parallelFor(rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t y = begin; y < end; ++y) {
-        float* out[5];
-        for (int i = 0; i < 5; ++i) out[i] = rowOf(blurred_[i], static_cast<int>(y));
-        ssimBlurProducts(rows_, image + y * w, target + y * w, scratchOf(y), out);
-      }
-    });
-    parallelFor(rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t y = begin; y < end; ++y) {
-        const float* in[5];
-        float* out[3];
-        for (int i = 0; i < 5; ++i) in[i] = rowOf(blurred_[i], static_cast<int>(y));
-        for (int i = 0; i < 3; ++i) out[i] = rowOf(maps_[i], static_cast<int>(y));
-        row_ssim_[y] = ssimRow(rows_, in, scratchOf(y), out);
-      }
-    });
-    parallelFor(rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t y = begin; y < end; ++y) {
-        const float* in[3];
-        for (int i = 0; i < 3; ++i) in[i] = rowOf(maps_[i], static_cast<int>(y));
-        row_l1_[y] =
-            ssimGradientRow(rows_, in, image + y * w, target + y * w, l1_scale, ssim_scale, gradient + y * w);
-      }
-    });
-  }
-
-  SsimRows rows_{};
-  int height_ = 0;
-  AlignedVector<float> blurred_[5], maps_[3], scratch_;
+  const std::array<float, 6> window_ = windowOf();
+  int width_ = 0, height_ = 0, channels_ = 0;
+  std::size_t piece_floats_ = 0;
+  AlignedVector<float> scratch_;
   std::vector<double> row_ssim_, row_l1_;
 };
 

@@ -12,28 +12,20 @@ std::unique_ptr<TrainingOps> makeCpuTrainingOps();
 
 // SIMD steps on rows and ranges (one instruction set chosen at run time; all give the same bits).
 
-// Separable 11-tap Gaussian of standard deviation 1.5 over planes with kSsimPad zeros around the rows.
-inline constexpr int kSsimPad = 16, kSsimReach = 5;
-
-// Five (or three) padded rows to their horizontally blurred rows.
-struct SsimRows {
-  int width;        // of the picture
-  int stride;       // floats a padded row
+// SSIM with its gradient and L1 on one channel (methods 1.10), rows [begin, end). The band rolls over the
+// rows with what its 11-row windows need in `scratch`, which stays in the cache; rows at its borders are
+// worked out by both neighbours.
+struct SsimChannel {
+  const float *image, *target;
+  float* gradient;  // l1_scale sign(image - target) + ssim_scale d(sum of SSIM)/d(image)
+  int width, height;
   float window[6];  // centre first: window[i] weighs pixels at distance i
+  float l1_scale, ssim_scale;
+  double *row_ssim, *row_l1;  // sums of every row
 };
-// Products of a row pair: blurred a, b, a^2, b^2, ab into the five rows `out`. `scratch`: 5 x stride floats.
-void ssimBlurProducts(const SsimRows& s, const float* a, const float* b, float* scratch, float* const out[5]);
-
-struct SsimRowResult {
-  double ssim = 0, l1 = 0;
-};
-// `blurred`: row y of the five planes, rows y-5 ... y+5 readable at distance `stride`. Writes the row-blurred
-// derivative maps (sum over pixels of SSIM) into the three rows `out`. `scratch`: 3 x stride floats, zero
-// padded.
-double ssimRow(const SsimRows& s, const float* const blurred[5], float* scratch, float* const out[3]);
-// gradient = l1_scale * sign(a - b) + ssim_scale * dS/da of one row; returns the sum of |a - b|.
-double ssimGradientRow(const SsimRows& s, const float* const maps[3], const float* a, const float* b,
-                       float l1_scale, float ssim_scale, float* gradient);
+std::size_t ssimScratchFloats(int width);
+// `scratch`: zero before the first call of a width, else as the last call left it.
+void ssimBand(const SsimChannel& channel, int begin, int end, float* scratch);
 
 struct AdamRange {
   float *parameter, *first, *second;
