@@ -154,6 +154,25 @@ Image<std::uint8_t> depthEdges(const Image<float>& depth_m, const Image<float>& 
   return edges;
 }
 
+float evenDepth(const SurfaceGuides& s, int x, int y, int radius) {
+  constexpr float kReach_m = 0.03f;
+  const float z = s.depth_m(x, y),
+              falloff = 2.0f / static_cast<float>(radius * radius);  // sigma: half the radius
+  float sum = 0, weight = 0;
+  for (int v = std::max(0, y - radius); v <= std::min(s.alpha.height - 1, y + radius); ++v) {
+    for (int u = std::max(0, x - radius); u <= std::min(s.alpha.width - 1, x + radius); ++u) {
+      const float other = s.depth_m(u, v);
+      if (!(s.alpha(u, v) > 0.9f) || std::abs(other - z) > kReach_m) continue;
+      float w = std::max(0.0f, glm::dot(s.normal(x, y), s.normal(u, v)));
+      for (int k = 0; k < 3; ++k) w *= w;
+      w *= std::exp(-falloff * static_cast<float>((u - x) * (u - x) + (v - y) * (v - y)));
+      sum += w * other;
+      weight += w;
+    }
+  }
+  return weight > 0 ? sum / weight : z;
+}
+
 void denoiseATrous(std::span<NoisySignal> signals, const DenoiseGuides& guides, int levels) {
   const Scene scene = prepare(guides);
   for (NoisySignal& signal : signals) {

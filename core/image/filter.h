@@ -14,6 +14,17 @@ namespace beam {
 // step of the 3x3 neighbourhood); pixels without depth and the picture's border count as edges (methods 2.6).
 Image<std::uint8_t> depthEdges(const Image<float>& depth_m, const Image<float>& alpha);
 
+struct SurfaceGuides {
+  const Image<float>& depth_m;
+  const Image<float>& alpha;
+  const Image<vec3>& normal;  // unit
+};
+
+// The mean depth of the surface around a pixel: within `radius` pixels, alpha > 0.9, at most 30 mm away,
+// weighted by distance and by how the normals agree. Evens out the steps between Gaussians; keeps 0 where
+// there is no depth.
+float evenDepth(const SurfaceGuides& surface, int x, int y, int radius);
+
 struct DenoiseGuides {
   Image<vec3> normal;         // unit
   Image<float> depth_m;       // > 0 where valid

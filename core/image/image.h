@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image<T>: a picture of T, rows top to bottom, no padding. Pixel (x, y) has its centre at (x + 0.5, y + 0.5).
-// Planes: the same data as separate float planes, the form that the engine computes on.
+// Image<T>: a picture of T, rows top to bottom, no padding. Pixel (x, y) has its centre at (x + 0.5, y +
+// 0.5). Planes: the same data as separate float planes, the form that the engine computes on.
 #pragma once
 
 #include <cstddef>

@@ -46,13 +46,15 @@ double ssimOfChannel(const std::vector<double>& a, const std::vector<double>& b,
     for (std::size_t i = 0; i < p.size(); ++i) r[i] = p[i] * q[i];
     return r;
   };
-  const std::vector<double> ma = blurInside(a, w, h), mb = blurInside(b, w, h), aa = blurInside(product(a, a), w, h),
-                            bb = blurInside(product(b, b), w, h), ab = blurInside(product(a, b), w, h);
+  const std::vector<double> ma = blurInside(a, w, h), mb = blurInside(b, w, h),
+                            aa = blurInside(product(a, a), w, h), bb = blurInside(product(b, b), w, h),
+                            ab = blurInside(product(a, b), w, h);
   constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
   double sum = 0;
   for (std::size_t i = 0; i < ma.size(); ++i) {
     const double va = aa[i] - ma[i] * ma[i], vb = bb[i] - mb[i] * mb[i], cab = ab[i] - ma[i] * mb[i];
-    sum += (2 * ma[i] * mb[i] + c1) * (2 * cab + c2) / ((ma[i] * ma[i] + mb[i] * mb[i] + c1) * (va + vb + c2));
+    sum +=
+        (2 * ma[i] * mb[i] + c1) * (2 * cab + c2) / ((ma[i] * ma[i] + mb[i] * mb[i] + c1) * (va + vb + c2));
   }
   return sum / static_cast<double>(ma.size());
 }
@@ -97,7 +99,8 @@ PixelRect maskBounds(const Image<std::uint8_t>& mask) {
       r = {std::min(r.x0, x), std::min(r.y0, y), std::max(r.x1, x + 1), std::max(r.y1, y + 1)};
     }
   }
-  if (r.x1 <= r.x0) throw Error(Error::Kind::Data, "the ground-truth mask is empty: there is nothing to score");
+  if (r.x1 <= r.x0)
+    throw Error(Error::Kind::Data, "the ground-truth mask is empty: there is nothing to score");
   r.x0 = std::max(0, std::min(r.x0, mask.width - 11));
   r.y0 = std::max(0, std::min(r.y0, mask.height - 11));
   r.x1 = std::max(r.x1, 11);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores of pictures, in the evaluator's sense: values in [0, 1], crop given by a rectangle, double precision.
+// Scores of pictures, in the evaluator's sense: values in [0, 1], crop given by a rectangle, double
+// precision.
 #pragma once
 
 #include "core/image/image.h"
@@ -13,12 +14,12 @@ struct PixelRect {
 // 10 log10(1 / mean squared difference) over all channels and pixels of the rectangle; 100 when equal.
 double psnr(const Planes& a, const Planes& b, PixelRect rect);
 
-// Wang et al. 2004: 11x11 Gaussian window, sigma 1.5, K = (0.01, 0.03), windows fully inside the rectangle, mean over
-// channels. The rectangle is at least 11 pixels wide and high.
+// Wang et al. 2004: 11x11 Gaussian window, sigma 1.5, K = (0.01, 0.03), windows fully inside the rectangle,
+// mean over channels. The rectangle is at least 11 pixels wide and high.
 double ssim(const Planes& a, const Planes& b, PixelRect rect);
 
-// Bounding box of mask > 0, grown to at least 11 pixels a side inside the picture (evaluate.py's rule). Throws
-// Error{Data} for an empty mask.
+// Bounding box of mask > 0, grown to at least 11 pixels a side inside the picture (evaluate.py's rule).
+// Throws Error{Data} for an empty mask.
 PixelRect maskBounds(const Image<std::uint8_t>& mask);
 
 }  // namespace beam

@@ -18,7 +18,8 @@ constexpr std::size_t kMaxEntries = 150'000'000;  // of 8 bytes: 1.2 GB of blend
 constexpr std::size_t kViewsTogether = 16;        // whose back-projections are held at a time
 constexpr float kSlopeFloor = 0.01f;              // linear; below it the eye's slope would drown the rest
 constexpr float kSeen = 0.05f;                    // sum of blend weights (pixels) that makes a Gaussian seen
-constexpr float kPrior = 1e-4f;                   // pull of the mean colour towards its first guess
+constexpr float kPrior = 1e-4f;                   // pull towards the first guess, of what the pictures say
+constexpr float kPriorPixels = 0.003f;            // and at least as much as this many pixels would say
 constexpr int kNeighbors = 4;                     // seen Gaussians that lend their colour to an unseen one
 constexpr double kConverged = 1e-10;              // of the squared residual
 constexpr std::size_t kGrain = 2048;              // Gaussians a piece
@@ -122,8 +123,9 @@ class NormalEquations {
              [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { coverage_[i] += s; });
     forViews([&](const ViewEquations& v, std::vector<vec4>& out) { project(v, out, Row::Target); },
              [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { mean_[i] += s; });
+    typical_ = meanImportance();
     for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-      diagonal_[i] += pull(i % kShCount) * row_sum_[i / kShCount];
+      diagonal_[i] += pull(i);
     }
   }
 
@@ -169,7 +171,7 @@ class NormalEquations {
   MaterialCoefficients times(const MaterialCoefficients& p) const {
     MaterialCoefficients q(p.size());
     parallelFor(p.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) q[i] = pull(i % kShCount) * row_sum_[i / kShCount] * p[i];
+      for (std::size_t i = begin; i < end; ++i) q[i] = pull(i) * p[i];
     });
     const auto evaluate = [&](std::size_t i, const std::array<float, kShCount>& b) { return at(p, i, b); };
     forViews([&](const ViewEquations& v, std::vector<vec4>& out) { misfit(v, out, evaluate, false); },
@@ -184,7 +186,23 @@ class NormalEquations {
  private:
   enum class Row { Importance, Seen, Target };
 
-  float pull(std::size_t k) const { return k == 0 ? kPrior : regularization_; }
+  // Of coefficient i: little-seen Gaussians keep their first guess, view-dependence must pay its way.
+  vec4 pull(std::size_t i) const {
+    const float share = i % kShCount == 0 ? kPrior : regularization_;
+    return share * row_sum_[i / kShCount] + kPriorPixels * typical_;
+  }
+
+  // Mean importance of a pixel that has any.
+  vec4 meanImportance() const {
+    dvec4 sum(0), count(0);
+    for (const ViewEquations& v : views_) {
+      for (const vec4& importance : v.importance) {
+        sum += dvec4(importance);
+        count += dvec4(glm::greaterThan(importance, vec4(0)));
+      }
+    }
+    return vec4(sum / glm::max(count, dvec4(1)));
+  }
 
   static vec4 at(const MaterialCoefficients& x, std::size_t gaussian, const std::array<float, kShCount>& b) {
     vec4 v(0);
@@ -275,6 +293,7 @@ class NormalEquations {
   std::vector<ViewEquations> views_;
   std::vector<vec4> row_sum_, coverage_, mean_;  // of importance w, of w where seen, of importance w target
   std::vector<vec4> diagonal_;
+  vec4 typical_ = vec4(0);
 };
 
 dvec4 dot(const std::vector<vec4>& a, const std::vector<vec4>& b) {

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kPiece = 64;      // points whose rays are traced in one call
 constexpr std::size_t kBand = 64 * 64;  // points between two looks at the progress: well under 0.5 s
+constexpr float kEven_m = 0.01f;        // radius over which the depth of ray origins is evened out
 constexpr float kMinRoughness = 0.1f;   // narrower lobes are noise at this number of rays (methods 5.4)
 
 // What one ray brings if it is free: f / (sum of N p), the balance heuristic of all strategies (Veach 1995).
@@ -133,29 +134,6 @@ void integratePiece(std::span<const SurfacePoint> points, const Sampler& sampler
 
 }  // namespace
 
-namespace {
-float evenDepth(const GBuffer& g, int x, int y) {
-  static const int kR = getenv("SM") ? atoi(getenv("SM")) : 3;
-  static const float kUp = getenv("UP") ? atof(getenv("UP")) : 0;
-  const float z = g.depth_m(x, y);
-  float sum = 0, weight = 0, sq = 0;
-  for (int j = -kR; j <= kR; ++j) {
-    for (int i = -kR; i <= kR; ++i) {
-      const int u = x + i, v = y + j;
-      if (u < 0 || v < 0 || u >= g.alpha.width || v >= g.alpha.height) continue;
-      const float q = g.depth_m(u, v);
-      if (!(g.alpha(u, v) > 0.9f) || std::abs(q - z) > 0.03f) continue;
-      float f = std::max(0.0f, glm::dot(g.normal_world(x, y), g.normal_world(u, v)));
-      f *= f; f *= f; f *= f;
-      f *= std::exp(-0.5f * (i * i + j * j) / (0.5f * kR * 0.5f * kR + 1e-6f));
-      sum += f * q; sq += f * q * q;
-      weight += f;
-    }
-  }
-  const float mean = sum / weight;
-  return mean - kUp * std::sqrt(std::max(0.0f, sq / weight - mean * mean));
-}
-}
 std::vector<SurfacePoint> surfacePoints(const GBuffer& g, const Camera& camera,
                                         const Image<std::uint8_t>& mask) {
   const Image<std::uint8_t> edges = depthEdges(g.depth_m, g.alpha);
@@ -167,7 +145,12 @@ std::vector<SurfacePoint> surfacePoints(const GBuffer& g, const Camera& camera,
       const dvec3 ray = rayOf(camera.intrinsics, {x + 0.5, y + 0.5});
       const vec3 to_eye(glm::normalize(world_from_camera.rotation * -ray));
       if (!(glm::dot(g.normal_world(x, y), to_eye) > 0.05f)) continue;
-      const vec3 position(world_from_camera * (ray * static_cast<double>(evenDepth(g, x, y))));
+      // The median depth steps from Gaussian to Gaussian by more than the ray offset; a point in a step's
+      // foot would be shadowed by its own surface.
+      const double pixels = kEven_m * camera.intrinsics.fx / g.depth_m(x, y);
+      const int radius = static_cast<int>(std::clamp(std::lround(pixels), 1l, 8l));
+      const double depth = evenDepth({g.depth_m, g.alpha, g.normal_world}, x, y, radius);
+      const vec3 position(world_from_camera * (ray * depth));
       points.push_back({x, y, position, g.normal_world(x, y), to_eye});
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a long computation shows what it has so far. May be empty; called on the job's thread, about once a second.
+// How a long computation shows what it has so far. May be empty; called on the job's thread, about once a
+// second.
 #pragma once
 
 #include <functional>

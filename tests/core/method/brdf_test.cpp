@@ -156,7 +156,6 @@ TEST(AmbientOcclusion, FromTheSharedRaysIsAsGoodAsFiftyStratifiedOnes) {
       p.x = 4 * i;
       square += std::pow(integrate(std::vector{p}, {.offset_m = 0}, light, wall)[0].sky - 0.5, 2);
     }
-    std::printf("rms %g\n", std::sqrt(square / count));
     EXPECT_LT(std::sqrt(square / count), 0.04);
   }
 }

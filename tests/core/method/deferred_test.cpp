@@ -20,10 +20,10 @@ namespace {
 Environment uniformLight() { return makeEnvironment(Image<vec3>(32, 16, vec3(1))); }
 
 Environment smoothLight() {
-  Image<vec3> map(128, 64);
-  for (int y = 0; y < 64; ++y) {
-    for (int x = 0; x < 128; ++x) {
-      const vec3 d = directionFromLatLong({(x + 0.5f) / 128, (y + 0.5f) / 64});
+  Image<vec3> map(64, 32);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const vec3 d = directionFromLatLong({(x + 0.5f) / 64, (y + 0.5f) / 32});
       map(x, y) = 1.0f + 0.5f * vec3(d.x, d.y, d.z);
     }
   }
@@ -31,9 +31,9 @@ Environment smoothLight() {
 }
 
 Environment sun(vec3 direction) {
-  Image<vec3> map(256, 128, vec3(0.2f));
+  Image<vec3> map(128, 64, vec3(0.2f));
   const vec2 uv = latLongFromDirection(direction);
-  map(static_cast<int>(uv.x * 256), static_cast<int>(uv.y * 128)) = vec3(3000);
+  map(static_cast<int>(uv.x * 128), static_cast<int>(uv.y * 64)) = vec3(750);
   return makeEnvironment(std::move(map));
 }
 
@@ -79,10 +79,10 @@ TEST(PreparedLight, IntegratesSmoothAndSunLikePanoramasAlike) {
 
 // A round lamp, so that sampling finds it.
 Environment lamp(vec3 center) {
-  Image<vec3> map(256, 128, vec3(0.2f));
-  for (int y = 0; y < 128; ++y) {
-    for (int x = 0; x < 256; ++x) {
-      const float c = glm::dot(center, directionFromLatLong({(x + 0.5f) / 256, (y + 0.5f) / 128}));
+  Image<vec3> map(128, 64, vec3(0.2f));
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const float c = glm::dot(center, directionFromLatLong({(x + 0.5f) / 128, (y + 0.5f) / 64}));
       map(x, y) += vec3(20 * std::exp(200 * (c - 1)));
     }
   }
@@ -120,7 +120,7 @@ TEST(PreparedLight, TurnsWithTheYawAsThePanoramaDoes) {
   for (int i = 0; i < 50; ++i) {
     const vec3 d = direction(i);
     EXPECT_NEAR(light.irradiance(d, 1.1f).y, turned_light.irradiance(d, 0).y, 1e-3);
-    EXPECT_NEAR(light.background(d, 1.1f).y, radianceFrom(turned_environment, d).y, 0.02 * 3000);
+    EXPECT_NEAR(light.background(d, 1.1f).y, radianceFrom(turned_environment, d).y, 0.02 * 750);
     EXPECT_NEAR(light.prefiltered(d, 0.5f, 1.1f).y, turned_light.prefiltered(d, 0.5f, 0).y, 1e-3);
   }
   // Positive yaw moves the light from +Z towards +X.
