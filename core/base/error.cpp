@@ -5,13 +5,20 @@ namespace beam {
 
 int exitCode(Error::Kind kind) {
   switch (kind) {
-    case Error::Kind::Usage: return 2;
-    case Error::Kind::Data: return 65;
-    case Error::Kind::Refused: return 69;
-    case Error::Kind::OutOfMemory: return 71;
-    case Error::Kind::Locked: return 73;
-    case Error::Kind::Storage: return 74;
-    case Error::Kind::Bug: return 70;
+    case Error::Kind::Usage:
+      return 2;
+    case Error::Kind::Data:
+      return 65;
+    case Error::Kind::Refused:
+      return 69;
+    case Error::Kind::OutOfMemory:
+      return 71;
+    case Error::Kind::Locked:
+      return 73;
+    case Error::Kind::Storage:
+      return 74;
+    case Error::Kind::Bug:
+      return 70;
   }
   return 70;
 }

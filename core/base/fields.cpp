@@ -19,13 +19,13 @@ template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
 [[noreturn]] void wrongType(const FieldInfo& info, std::string_view expected, const FieldValue& found) {
-  throw Error(Error::Kind::Usage,
-              fmt::format("{} expects {}, found {}", info.name, expected, toText(found)));
+  throw Error(Error::Kind::Usage, fmt::format("{} expects {}, found {}", info.name, expected, toText(found)));
 }
 
 int asInt(const FieldInfo& info, const FieldValue& value) {
   if (const int* i = std::get_if<int>(&value)) return *i;
-  if (const double* d = std::get_if<double>(&value); d && *d == std::floor(*d) && std::abs(*d) < 2147483647.0) {
+  if (const double* d = std::get_if<double>(&value);
+      d && *d == std::floor(*d) && std::abs(*d) < 2147483647.0) {
     return static_cast<int>(*d);
   }
   wrongType(info, "a whole number", value);
@@ -73,26 +73,27 @@ void FieldSetter::visit(const FieldInfo& info, FieldPointer target) {
 void checkRange(const FieldInfo& info, const FieldValue& value) {
   const auto number = [&](double v) {
     if (std::isfinite(v) && v >= info.min && v <= info.max) return;
-    throw Error(Error::Kind::Usage,
-                fmt::format("{} expects {} to {}{}{}, found {}", info.name, info.min, info.max,
-                            info.unit.empty() ? "" : " ", info.unit, v));
+    throw Error(Error::Kind::Usage, fmt::format("{} expects {} to {}{}{}, found {}", info.name, info.min,
+                                                info.max, info.unit.empty() ? "" : " ", info.unit, v));
   };
   std::visit(Overloaded{[](bool) {}, [&](int v) { number(v); }, [&](double v) { number(v); },
                         [&](const std::string& s) {
                           if (info.choices.empty()) return;
-                          if (std::find(info.choices.begin(), info.choices.end(), s) != info.choices.end()) return;
-                          throw Error(Error::Kind::Usage, fmt::format("{} expects one of {}, found \"{}\"", info.name,
-                                                                      fmt::join(info.choices, ", "), s));
+                          if (std::find(info.choices.begin(), info.choices.end(), s) != info.choices.end())
+                            return;
+                          throw Error(Error::Kind::Usage,
+                                      fmt::format("{} expects one of {}, found \"{}\"", info.name,
+                                                  fmt::join(info.choices, ", "), s));
                         }},
              value);
 }
 
 std::string toText(const FieldValue& value) {
-  return std::visit(Overloaded{[](bool v) { return std::string(v ? "true" : "false"); },
-                               [](int v) { return fmt::format("{}", v); },
-                               [](double v) { return fmt::format("{}", v); },
-                               [](const std::string& v) { return v; }},
-                    value);
+  return std::visit(
+      Overloaded{[](bool v) { return std::string(v ? "true" : "false"); },
+                 [](int v) { return fmt::format("{}", v); }, [](double v) { return fmt::format("{}", v); },
+                 [](const std::string& v) { return v; }},
+      value);
 }
 
 std::string nearestName(std::string_view name, const std::vector<std::string>& known) {

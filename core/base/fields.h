@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How an options struct tells what it holds. One declaration, describe(Fields&, Options&), serves the command line,
-// the form, JSON, the cache key, the range check and the manual; each of these is a reader of Fields.
+// How an options struct tells what it holds. One declaration, describe(Fields&, Options&), serves the command
+// line, the form, JSON, the cache key, the range check and the manual; each of these is a reader of Fields.
 #pragma once
 
 #include <limits>
@@ -71,8 +71,8 @@ class FieldList final : public Fields {
   void visit(const FieldInfo& info, FieldPointer value) override;
 };
 
-// Sets one field by name; throws Error{Usage} for a wrong type or a value out of range. `found` tells whether a field
-// of that name was there.
+// Sets one field by name; throws Error{Usage} for a wrong type or a value out of range. `found` tells whether
+// a field of that name was there.
 class FieldSetter final : public Fields {
  public:
   FieldSetter(std::string name, FieldValue value) : name_(std::move(name)), value_(std::move(value)) {}

@@ -16,7 +16,8 @@ FieldValue parseFieldValue(std::string_view text) {
   if (j.is_boolean()) return j.get<bool>();
   if (j.is_number_integer()) {
     const auto v = j.get<std::int64_t>();
-    if (v >= std::numeric_limits<int>::min() && v <= std::numeric_limits<int>::max()) return static_cast<int>(v);
+    if (v >= std::numeric_limits<int>::min() && v <= std::numeric_limits<int>::max())
+      return static_cast<int>(v);
     return static_cast<double>(v);
   }
   if (j.is_number()) return j.get<double>();

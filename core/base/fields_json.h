@@ -9,8 +9,8 @@
 
 namespace beam {
 
-// A JSON scalar ("2000", "0.5", "true", "\"text\""; a bare word is taken as text). Throws Error{Usage} for arrays and
-// objects.
+// A JSON scalar ("2000", "0.5", "true", "\"text\""; a bare word is taken as text). Throws Error{Usage} for
+// arrays and objects.
 FieldValue parseFieldValue(std::string_view text);
 
 // The fields as one flat JSON object {"name": value}, in order of declaration, indented by 2.

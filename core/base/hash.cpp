@@ -12,7 +12,8 @@ std::string Digest::hex() const { return fmt::format("{:016x}{:016x}", high, low
 
 Digest parseDigest(std::string_view hex) {
   const bool ok = hex.size() == 32 && hex.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-  if (!ok) throw Error(Error::Kind::Data, fmt::format("\"{}\" is not a digest of 32 hexadecimal digits", hex));
+  if (!ok)
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" is not a digest of 32 hexadecimal digits", hex));
   return {std::stoull(std::string(hex.substr(0, 16)), nullptr, 16),
           std::stoull(std::string(hex.substr(16)), nullptr, 16)};
 }
@@ -22,7 +23,9 @@ Digest digestOf(std::span<const std::byte> bytes) {
   return {h.high64, h.low64};
 }
 
-Digest digestOf(std::string_view text) { return digestOf(std::as_bytes(std::span(text.data(), text.size()))); }
+Digest digestOf(std::string_view text) {
+  return digestOf(std::as_bytes(std::span(text.data(), text.size())));
+}
 
 struct Hasher::State {
   XXH3_state_t* xxh = XXH3_createState();

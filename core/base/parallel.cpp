@@ -36,7 +36,8 @@ namespace detail {
 
 void runPieces(std::size_t pieces, const std::function<void(std::size_t)>& piece) {
   if (pieces == 1) return piece(0);
-  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t p) { piece(p); }, tbb::simple_partitioner());
+  tbb::parallel_for(
+      std::size_t{0}, pieces, [&](std::size_t p) { piece(p); }, tbb::simple_partitioner());
 }
 
 }  // namespace detail

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only starter of compute threads (oneTBB underneath). Work is cut into pieces whose borders do not depend on
-// the number of threads, and reductions join the pieces in index order: any thread count gives the same bits.
+// The only starter of compute threads (oneTBB underneath). Work is cut into pieces whose borders do not
+// depend on the number of threads, and reductions join the pieces in index order: any thread count gives the
+// same bits.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +18,8 @@ namespace detail {
 void runPieces(std::size_t pieces, const std::function<void(std::size_t)>& piece);
 }
 
-// Calls body(begin, end) for consecutive pieces of at most `grain` indices of [0, count), in any order. The first
-// exception thrown by a piece is rethrown here.
+// Calls body(begin, end) for consecutive pieces of at most `grain` indices of [0, count), in any order. The
+// first exception thrown by a piece is rethrown here.
 template <class Body>
 void parallelFor(std::size_t count, std::size_t grain, Body&& body) {
   if (count == 0) return;
@@ -34,7 +35,8 @@ template <class T, class Map, class Join>
 T parallelReduce(std::size_t count, std::size_t grain, T identity, Map&& map, Join&& join) {
   const std::size_t pieces = count == 0 ? 0 : (count + grain - 1) / grain;
   std::vector<T> partial(pieces, identity);
-  parallelFor(count, grain, [&](std::size_t begin, std::size_t end) { partial[begin / grain] = map(begin, end); });
+  parallelFor(count, grain,
+              [&](std::size_t begin, std::size_t end) { partial[begin / grain] = map(begin, end); });
   T total = identity;
   for (const T& p : partial) total = join(total, p);
   return total;

@@ -54,7 +54,8 @@ void Progress::report(bool always) const {
   const auto now = std::chrono::steady_clock::now();
   if (!always && now - root_->last < std::chrono::milliseconds(50)) return;
   root_->last = now;
-  const double inside = total_ > 0 ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)) : 0.0;
+  const double inside =
+      total_ > 0 ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)) : 0.0;
   root_->listener({begin_ + (end_ - begin_) * inside, label_, done_, total_});
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress, cancellation and the stop token in one: to report is to check. Call it from the job's thread only,
-// never inside a parallelFor body.
+// Progress, cancellation and the stop token in one: to report is to check. Call it from the job's thread
+// only, never inside a parallelFor body.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ class Progress {
  public:
   using Listener = std::function<void(const ProgressReport&)>;
 
-  // The root of a job. `listener` may be empty; it is called on the job's thread, at most every 50 ms and at the end
-  // of parts.
+  // The root of a job. `listener` may be empty; it is called on the job's thread, at most every 50 ms and at
+  // the end of parts.
   explicit Progress(std::stop_token stop = {}, Listener listener = {});
   ~Progress();
   Progress(const Progress&) = delete;
@@ -32,10 +32,10 @@ class Progress {
   // A child that covers the next `share` (of this part's whole, [0, 1]).
   Progress part(double share, std::string label);
 
-  void expect(std::int64_t steps);     // steps of this part that follow
-  void step(std::int64_t count = 1);   // throws Cancelled when a stop was requested
-  void check() const;                  // throws Cancelled likewise, reports nothing
-  bool stopRequested() const;          // for worker pieces, which must return early instead of throwing
+  void expect(std::int64_t steps);    // steps of this part that follow
+  void step(std::int64_t count = 1);  // throws Cancelled when a stop was requested
+  void check() const;                 // throws Cancelled likewise, reports nothing
+  bool stopRequested() const;         // for worker pieces, which must return early instead of throwing
 
  private:
   struct Root;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counter-based random numbers: a value is a function of (seed, stream, index), so no order of calls and no number
-// of threads changes it. PCG-style output hash over a 64-bit Weyl counter.
+// Counter-based random numbers: a value is a function of (seed, stream, index), so no order of calls and no
+// number of threads changes it. PCG-style output hash over a 64-bit Weyl counter.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,8 @@ inline std::uint64_t mixBits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// One stream of numbers. Key it by what the numbers are for: RandomStream(seed, stage, frame, view, iteration).
+// One stream of numbers. Key it by what the numbers are for: RandomStream(seed, stage, frame, view,
+// iteration).
 class RandomStream {
  public:
   template <class... Keys>

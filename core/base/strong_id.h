@@ -18,5 +18,7 @@ struct StrongId {
 
 template <class Tag>
 struct std::hash<beam::StrongId<Tag>> {
-  std::size_t operator()(beam::StrongId<Tag> id) const noexcept { return std::hash<std::int32_t>()(id.value); }
+  std::size_t operator()(beam::StrongId<Tag> id) const noexcept {
+    return std::hash<std::int32_t>()(id.value);
+  }
 };

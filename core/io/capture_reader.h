@@ -12,7 +12,7 @@
 namespace beam {
 
 struct ImportOptions {
-  std::optional<UpAxis> up = {};      // overrides what the capture says
+  std::optional<UpAxis> up = {};           // overrides what the capture says
   std::vector<std::string> hold_out = {};  // camera names, or one number N: every Nth camera
 };
 

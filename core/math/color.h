@@ -8,12 +8,16 @@
 
 namespace beam {
 
-inline float linearFromSrgb(float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); }
+inline float linearFromSrgb(float c) {
+  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+}
 inline float srgbFromLinear(float c) {
   return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
 }
 // d srgbFromLinear / dc; weights a linear error as it is seen.
-inline float srgbSlope(float c) { return c <= 0.0031308f ? 12.92f : 1.055f / 2.4f * std::pow(c, 1 / 2.4f - 1); }
+inline float srgbSlope(float c) {
+  return c <= 0.0031308f ? 12.92f : 1.055f / 2.4f * std::pow(c, 1 / 2.4f - 1);
+}
 
 inline vec3 linearFromSrgb(vec3 c) { return {linearFromSrgb(c.x), linearFromSrgb(c.y), linearFromSrgb(c.z)}; }
 inline vec3 srgbFromLinear(vec3 c) { return {srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z)}; }

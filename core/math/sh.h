@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real spherical harmonics to degree 3 in the splat dialect (methods 1.2): 16 functions, Condon-Shortley signs,
-// value = 0.5 + sum_k basis_k(direction) * coefficient_k. Direction: unit, from the camera to the Gaussian, world axes.
+// Real spherical harmonics to degree 3 in the splat dialect (methods 1.2): 16 functions, Condon-Shortley
+// signs, value = 0.5 + sum_k basis_k(direction) * coefficient_k. Direction: unit, from the camera to the
+// Gaussian, world axes.
 #pragma once
 
 #include <array>

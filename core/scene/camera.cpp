@@ -22,7 +22,8 @@ void validate(const Camera& camera, std::string_view name) {
   if (camera.height <= 0) refuse("expected a positive picture height", camera.height);
   const dquat& q = camera.camera_from_world.rotation;
   const double norm = glm::dot(q, q);
-  if (!(std::abs(norm - 1.0) < 1e-6)) refuse("expected a unit quaternion as its rotation, of squared norm 1", norm);
+  if (!(std::abs(norm - 1.0) < 1e-6))
+    refuse("expected a unit quaternion as its rotation, of squared norm 1", norm);
   for (int i = 0; i < 3; ++i) {
     const double t = camera.camera_from_world.translation_m[i];
     if (!std::isfinite(t)) refuse("expected a finite translation", t);
@@ -33,7 +34,8 @@ Camera scaledDown(const Camera& camera, int factor) {
   Camera c = camera;
   c.width = camera.width / factor;
   c.height = camera.height / factor;
-  const double sx = static_cast<double>(c.width) / camera.width, sy = static_cast<double>(c.height) / camera.height;
+  const double sx = static_cast<double>(c.width) / camera.width,
+               sy = static_cast<double>(c.height) / camera.height;
   c.intrinsics = {camera.intrinsics.fx * sx, camera.intrinsics.fy * sy, camera.intrinsics.cx * sx,
                   camera.intrinsics.cy * sy};
   return c;

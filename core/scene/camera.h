@@ -29,7 +29,9 @@ inline dvec2 project(const Intrinsics& k, const dvec3& x_in_camera) {
 }
 
 // Ray through a pixel position, in camera axes, z = 1: x_in_camera = z_depth * rayOf(k, p).
-inline dvec3 rayOf(const Intrinsics& k, const dvec2& p) { return {(p.x - k.cx) / k.fx, (p.y - k.cy) / k.fy, 1.0}; }
+inline dvec3 rayOf(const Intrinsics& k, const dvec2& p) {
+  return {(p.x - k.cx) / k.fx, (p.y - k.cy) / k.fy, 1.0};
+}
 
 // The camera whose pictures are `factor` times smaller a side (sizes rounded down).
 Camera scaledDown(const Camera& camera, int factor);

@@ -5,10 +5,13 @@ namespace beam {
 
 dmat3 worldFromCapture(UpAxis up) {
   switch (up) {
-    case UpAxis::PlusY: return dmat3(1.0);
+    case UpAxis::PlusY:
+      return dmat3(1.0);
     // x_world = y, y_world = z, z_world = x of the capture; columns are the images of the capture's axes.
-    case UpAxis::PlusZ: return dmat3(dvec3(0, 0, 1), dvec3(1, 0, 0), dvec3(0, 1, 0));
-    case UpAxis::MinusY: return dmat3(dvec3(1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, -1));
+    case UpAxis::PlusZ:
+      return dmat3(dvec3(0, 0, 1), dvec3(1, 0, 0), dvec3(0, 1, 0));
+    case UpAxis::MinusY:
+      return dmat3(dvec3(1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, -1));
   }
   return dmat3(1.0);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CaptureSet: what a capture is, as understood by the importer, in the house's world (right-handed, +Y up, metres).
-// Pictures are read from disk when asked for; nothing is ever written into a capture.
+// CaptureSet: what a capture is, as understood by the importer, in the house's world (right-handed, +Y up,
+// metres). Pictures are read from disk when asked for; nothing is ever written into a capture.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +37,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
   // Whether the picture exists in the capture.
   virtual bool has(ViewIndex view, FrameIndex frame) const = 0;
-  // The photograph as stored, sRGB-encoded. Throws Error{Data} with the file's name when it cannot be read or has
-  // another size than the view's camera.
+  // The photograph as stored, sRGB-encoded. Throws Error{Data} with the file's name when it cannot be read or
+  // has another size than the view's camera.
   virtual Image<u8vec3> photo(ViewIndex view, FrameIndex frame) const = 0;
   // Coverage of the subject, 255 = inside; empty where the capture has no masks.
   virtual Image<std::uint8_t> mask(ViewIndex view, FrameIndex frame) const = 0;

@@ -41,7 +41,8 @@ vec2 latLongFromDirection(vec3 d) {
 
 vec3 directionFromLatLong(vec2 uv) {
   const float longitude = (0.5f - uv.x) * 2 * kPi, latitude = (0.5f - uv.y) * kPi;
-  return {std::cos(latitude) * std::sin(longitude), std::sin(latitude), std::cos(latitude) * std::cos(longitude)};
+  return {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
+          std::cos(latitude) * std::cos(longitude)};
 }
 
 vec3 radianceFrom(const Environment& e, vec3 direction) {
@@ -68,8 +69,9 @@ Environment makeEnvironment(Image<vec3> radiance) {
     }
   }
   if (cleared > 0) {
-    logWarning("panorama: expected finite radiance of at least 0, found {} values that are not; they count as black",
-               cleared);
+    logWarning(
+        "panorama: expected finite radiance of at least 0, found {} values that are not; they count as black",
+        cleared);
   }
   radiance.encoding = Encoding::Linear;
   return {std::move(radiance)};
@@ -111,7 +113,8 @@ EnvironmentSampler::EnvironmentSampler(const Environment& e)
       sum += luminance(radiance_(x, y)) * solidAngle;
       cdf[x + 1] = static_cast<float>(sum);
     }
-    for (int x = 1; x <= width_; ++x) cdf[x] = sum > 0 ? static_cast<float>(cdf[x] / sum) : static_cast<float>(x) / width_;
+    for (int x = 1; x <= width_; ++x)
+      cdf[x] = sum > 0 ? static_cast<float>(cdf[x] / sum) : static_cast<float>(x) / width_;
     rowSum[y] = sum;
     total += sum;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from all around: a linear lat-long panorama (OpenEXR = USD DomeLight: top row +Y, image centre +Z, +X at one
-// quarter of the width), and a table to draw directions from it.
+// Light from all around: a linear lat-long panorama (OpenEXR = USD DomeLight: top row +Y, image centre +Z, +X
+// at one quarter of the width), and a table to draw directions from it.
 #pragma once
 
 #include <array>
@@ -29,7 +29,8 @@ Environment makeEnvironment(Image<vec3> radiance);
 vec3 meanRadiance(const Environment& environment);
 vec3 brightestDirection(const Environment& environment);
 
-// Draws directions with density proportional to luminance (piecewise constant over the texels, solid angle exact).
+// Draws directions with density proportional to luminance (piecewise constant over the texels, solid angle
+// exact).
 class EnvironmentSampler {
  public:
   explicit EnvironmentSampler(const Environment& environment);
@@ -52,8 +53,8 @@ class EnvironmentSampler {
   std::vector<float> pdf_;        // per steradian, per texel
 };
 
-// Irradiance of the panorama as 9 SH coefficients per channel, cosine lobe applied (Ramamoorthi-Hanrahan 2001):
-// E(n) = irradiance(sh, n), in radiance units times steradian.
+// Irradiance of the panorama as 9 SH coefficients per channel, cosine lobe applied (Ramamoorthi-Hanrahan
+// 2001): E(n) = irradiance(sh, n), in radiance units times steradian.
 std::array<vec3, 9> irradianceSh(const Environment& environment);
 vec3 irradiance(const std::array<vec3, 9>& sh, vec3 normal);
 

@@ -28,7 +28,8 @@ Image<T> shrink(const Image<T>& in, int factor) {
 
 }  // namespace
 
-std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split, int downscale) {
+std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
+                                      int downscale) {
   std::vector<FrameView> loaded(capture.views.size());
   std::vector<std::string> problem(capture.views.size());
   parallelFor(capture.views.size(), 1, [&](std::size_t i, std::size_t) {
@@ -36,7 +37,8 @@ std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex fram
     const ViewIndex index{static_cast<std::int32_t>(i)};
     if (view.split != split || !capture.source->has(index, frame)) return;
     try {
-      FrameView v{view.name, view.camera, capture.source->photo(index, frame), capture.source->mask(index, frame)};
+      FrameView v{view.name, view.camera, capture.source->photo(index, frame),
+                  capture.source->mask(index, frame)};
       if (downscale > 1) {
         v.camera = scaledDown(v.camera, downscale);
         v.photo = shrink<u8vec3, ivec3>(v.photo, downscale);
@@ -49,13 +51,15 @@ std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex fram
   });
   std::vector<FrameView> views;
   for (std::size_t i = 0; i < loaded.size(); ++i) {
-    if (!problem[i].empty()) logWarning("{}; camera {} is left out of frame {}", problem[i], capture.views[i].name,
-                                        capture.frames[frame.value]);
+    if (!problem[i].empty())
+      logWarning("{}; camera {} is left out of frame {}", problem[i], capture.views[i].name,
+                 capture.frames[frame.value]);
     if (!loaded[i].photo.empty()) views.push_back(std::move(loaded[i]));
   }
   if (views.size() < 2 && split == Split::Train) {
-    throw Error(Error::Kind::Data, fmt::format("frame {}: expected at least 2 readable training pictures, found {}",
-                                               capture.frames[frame.value], views.size()));
+    throw Error(Error::Kind::Data,
+                fmt::format("frame {}: expected at least 2 readable training pictures, found {}",
+                            capture.frames[frame.value], views.size()));
   }
   return views;
 }

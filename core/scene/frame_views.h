@@ -12,13 +12,14 @@ namespace beam {
 struct FrameView {
   std::string name;
   Camera camera;
-  Image<u8vec3> photo;        // sRGB
-  Image<std::uint8_t> mask;   // 255 inside; empty: the capture has none
+  Image<u8vec3> photo;       // sRGB
+  Image<std::uint8_t> mask;  // 255 inside; empty: the capture has none
 };
 
-// The views of `split` that hold a readable picture of the frame; a picture that cannot be read is left out with a
-// warning. Pictures and cameras are scaled down by `downscale` (area average). Throws Error{Data} when fewer than
-// two views remain.
-std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split, int downscale = 1);
+// The views of `split` that hold a readable picture of the frame; a picture that cannot be read is left out
+// with a warning. Pictures and cameras are scaled down by `downscale` (area average). Throws Error{Data} when
+// fewer than two views remain.
+std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
+                                      int downscale = 1);
 
 }  // namespace beam

@@ -12,8 +12,8 @@ namespace {
 
 void checkLength(std::string_view what, std::size_t found, std::size_t expected) {
   if (found == expected) return;
-  throw Error(Error::Kind::Data, fmt::format("cloud of {} Gaussians: expected {} {}, found {}", expected, expected,
-                                             what, found));
+  throw Error(Error::Kind::Data, fmt::format("cloud of {} Gaussians: expected {} {}, found {}", expected,
+                                             expected, what, found));
 }
 
 void checkFinite(std::string_view what, const std::vector<float>& values, std::size_t perGaussian) {
