@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/base/parallel.h"
+#include "core/io/capture_pictures.h"
 #include "core/io/image_file.h"
 #include "core/io/splat_ply.h"
 #include "core/scene/environment.h"
@@ -29,7 +32,13 @@ const char* nameOf(UpAxis up) {
   return "";
 }
 
-PanoramaCheck checkPanorama(const fs::path& path) {
+// What is repaired on the way is logged where it is repaired; the report lists it too.
+PanoramaCheck checkPanorama(const fs::path& path, std::vector<std::string>& warnings) {
+  const int token = addLogSink([&](const LogRecord& r) {
+    if (r.level == LogLevel::Warning) warnings.push_back(r.text);
+  });
+  const std::unique_ptr<const int, void (*)(const int*)> remove(&token,
+                                                                [](const int* t) { removeLogSink(*t); });
   const Environment e = makeEnvironment(readRadiance(path));
   return {e.radiance.width, e.radiance.height, meanRadiance(e), brightestDirection(e)};
 }
@@ -41,6 +50,8 @@ double coverageOf(const Image<std::uint8_t>& mask) {
   return sum / static_cast<double>(mask.pixels.size());
 }
 
+// Decodes the first picture that can be used, for its mask; looks at the others without decoding them: whole,
+// and of the calibrated size.
 CameraCheck checkCamera(const CaptureSet& set, std::size_t view, std::vector<std::string>& warnings) {
   const View& v = set.views[view];
   CameraCheck c{v.name, v.split == Split::Test, v.camera.width, v.camera.height, v.camera.intrinsics};
@@ -49,12 +60,20 @@ CameraCheck checkCamera(const CaptureSet& set, std::size_t view, std::vector<std
     const FrameIndex frame{static_cast<std::int32_t>(f)};
     if (!set.source->has(index, frame)) continue;
     try {
-      set.source->photo(index, frame);
-      const double coverage = coverageOf(set.source->mask(index, frame));
-      if (c.frames++ == 0) c.mask_coverage = coverage;
-      if (coverage == 0) {
-        warnings.push_back(fmt::format("camera {}, frame {}: the mask is empty", v.name, set.frames[f]));
+      if (c.frames == 0) {
+        set.source->photo(index, frame);
+        c.mask_coverage = coverageOf(set.source->mask(index, frame));
+        if (c.mask_coverage == 0) {
+          warnings.push_back(fmt::format("camera {}, frame {}: the mask is empty", v.name, set.frames[f]));
+        }
+      } else {
+        const std::vector<std::string> files = set.source->files(index, frame);
+        for (std::size_t i = 0; i < files.size(); ++i) {
+          const ImageSize s = checkImageFile(files[i]);
+          requireCalibratedSize(v, files[i], {s.width, s.height}, i == 0 ? "picture" : "mask");
+        }
       }
+      ++c.frames;
     } catch (const Error& e) {
       warnings.push_back(
           fmt::format("{}; camera {}, frame {} cannot be used", e.what(), v.name, set.frames[f]));
@@ -83,7 +102,7 @@ CheckReport checkCapture(const fs::path& path, const ImportOptions& options) {
     r.warnings.push_back("no panorama (environment.exr or .hdr): the run stops after Surface");
   } else {
     try {
-      r.panorama = checkPanorama(*set.environment_file);
+      r.panorama = checkPanorama(*set.environment_file, r.warnings);
     } catch (const Error& e) {
       r.warnings.emplace_back(e.what());
     }
@@ -114,7 +133,7 @@ CheckReport checkPath(const fs::path& path, const ImportOptions& options) {
     r.splats = checkSplats(path);
   } else {
     r.kind = "panorama";
-    r.panorama = checkPanorama(path);
+    r.panorama = checkPanorama(path, r.warnings);
   }
   r.path = path.string();
   return r;

@@ -27,7 +27,8 @@ struct CaptureDescription {
   double frames_per_second = 30;
   std::optional<UpAxis> up;
   std::vector<DescribedCamera> cameras;
-  PointCloud points;  // capture axes; may be empty
+  std::filesystem::path points_file;  // seed points named by the description; may be empty
+  PointCloud points;                  // capture axes; may be empty
   std::vector<std::string> warnings;
 };
 
@@ -36,11 +37,17 @@ std::optional<CaptureDescription> readDatasetJson(const std::filesystem::path& f
 std::optional<CaptureDescription> readTransformsJson(const std::filesystem::path& folder);
 std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder);
 
-// Pictures of a camera folder by frame name (file stem), sorted.
+// Pictures of a camera folder by frame name (file stem); hidden files are none.
 std::map<std::string, std::filesystem::path> picturesIn(const std::filesystem::path& folder);
 bool isPicture(const std::filesystem::path& file);
 
 // A rotation matrix given in a file: throws Error{Data} unless it is orthonormal to 1e-3.
 dquat rotationFromMatrix(const dmat3& matrix, const std::string& where);
+
+// For descriptions with one pose a picture: throws Error{Data} when a camera moves or changes its lens.
+void requireStill(const DescribedCamera& known, const Camera& again, const std::string& where);
+
+// Names become paths, here and in what is written: throws Error{Data} for those that leave their folder.
+void requirePlainName(const std::string& name, const std::string& where);
 
 }  // namespace beam

@@ -10,109 +10,13 @@
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/capture_description.h"
-#include "core/io/image_file.h"
+#include "core/io/capture_pictures.h"
 #include "core/io/mesh_ply.h"
 
 namespace beam {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Where the mask of a picture lies (ecosystem 1.7, 1 to 4); empty: nowhere.
-fs::path findMask(const fs::path& root, const fs::path& picture, const std::string& camera) {
-  const std::string file = picture.filename().string(), stem = picture.stem().string();
-  for (const char* folder : {"masks", "mask", "mattes", "alpha"}) {
-    for (const fs::path& place : {root / folder / camera, root / folder}) {
-      if (!fs::is_directory(place)) continue;
-      for (const std::string& name : {file + ".png", stem + ".png", stem + ".jpg", camera + ".png"}) {
-        const bool whole_camera = name == camera + ".png";
-        if (whole_camera && place != root / folder) continue;
-        if (!whole_camera && place == root / folder && fs::is_directory(root / folder / camera)) continue;
-        if (fs::exists(place / name)) return place / name;
-      }
-    }
-  }
-  for (const std::string& name : {stem + "_alpha.png", stem + "_mask.png"}) {
-    if (fs::exists(picture.parent_path() / name)) return picture.parent_path() / name;
-  }
-  return {};
-}
-
-// A constant black or white border makes a key (contract: import).
-std::optional<u8vec3> keyOf(const Image<u8vec3>& photo) {
-  const u8vec3 first = photo(0, 0);
-  if (first != u8vec3(0) && first != u8vec3(255)) return std::nullopt;
-  for (int x = 0; x < photo.width; ++x) {
-    if (photo(x, 0) != first || photo(x, photo.height - 1) != first) return std::nullopt;
-  }
-  for (int y = 0; y < photo.height; ++y) {
-    if (photo(0, y) != first || photo(photo.width - 1, y) != first) return std::nullopt;
-  }
-  return first;
-}
-
-enum class MaskKind { None, Files, Alpha, Key };
-
-struct PictureFiles {
-  fs::path picture, mask;
-};
-
-class FileFrames final : public FrameSource {
- public:
-  FileFrames(std::vector<std::vector<PictureFiles>> files, std::vector<std::string> names,
-             std::vector<Camera> cameras, MaskKind kind)
-      : files_(std::move(files)), names_(std::move(names)), cameras_(std::move(cameras)), kind_(kind) {}
-
-  bool has(ViewIndex view, FrameIndex frame) const override { return !at(view, frame).picture.empty(); }
-
-  Image<u8vec3> photo(ViewIndex view, FrameIndex frame) const override {
-    Image<u8vec3> p = readPhoto(at(view, frame).picture);
-    checkSize(view, at(view, frame).picture, p.width, p.height, "picture");
-    return p;
-  }
-
-  Image<std::uint8_t> mask(ViewIndex view, FrameIndex frame) const override {
-    const PictureFiles& f = at(view, frame);
-    Image<std::uint8_t> m;
-    if (kind_ == MaskKind::Files && !f.mask.empty()) m = readMask(f.mask);
-    if (kind_ == MaskKind::Alpha) m = readAlpha(f.picture);
-    if (kind_ == MaskKind::Key) m = keyMask(f.picture);
-    if (!m.empty()) checkSize(view, kind_ == MaskKind::Files ? f.mask : f.picture, m.width, m.height, "mask");
-    return m;
-  }
-
-  std::vector<std::string> files(ViewIndex view, FrameIndex frame) const override {
-    const PictureFiles& f = at(view, frame);
-    if (f.mask.empty()) return {f.picture.string()};
-    return {f.picture.string(), f.mask.string()};
-  }
-
- private:
-  const PictureFiles& at(ViewIndex view, FrameIndex frame) const { return files_[view.value][frame.value]; }
-
-  static Image<std::uint8_t> keyMask(const fs::path& picture) {
-    const Image<u8vec3> p = readPhoto(picture);
-    const std::optional<u8vec3> key = keyOf(p);
-    if (!key) return {};
-    Image<std::uint8_t> m(p.width, p.height);
-    for (std::size_t i = 0; i < p.pixels.size(); ++i) m.pixels[i] = p.pixels[i] == *key ? 0 : 255;
-    return m;
-  }
-
-  void checkSize(ViewIndex view, const fs::path& file, int w, int h, const char* what) const {
-    const Camera& c = cameras_[view.value];
-    if (w == c.width && h == c.height) return;
-    throw Error(Error::Kind::Data,
-                fmt::format("\"{}\": camera {} is calibrated for {} x {} pixels, the {} has {} x {}; "
-                            "use the size the calibration was made for",
-                            file.string(), names_[view.value], c.width, c.height, what, w, h));
-  }
-
-  std::vector<std::vector<PictureFiles>> files_;
-  std::vector<std::string> names_;
-  std::vector<Camera> cameras_;
-  MaskKind kind_;
-};
 
 CaptureDescription describedBy(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
@@ -188,30 +92,9 @@ void dropEmptyCameras(CaptureDescription& d, const fs::path& folder) {
   }
 }
 
-MaskKind maskKindOf(const CaptureDescription& d, std::vector<std::vector<PictureFiles>>& files) {
-  for (const auto& camera : files) {
-    for (const PictureFiles& f : camera) {
-      if (!f.mask.empty()) return MaskKind::Files;
-    }
-  }
-  for (const auto& camera : files) {
-    for (const PictureFiles& f : camera) {
-      if (f.picture.empty()) continue;
-      try {
-        if (readImageSize(f.picture).has_alpha) return MaskKind::Alpha;
-        return keyOf(readPhoto(f.picture)) ? MaskKind::Key : MaskKind::None;
-      } catch (const Error&) {
-        continue;  // a damaged picture is named when its frame is loaded
-      }
-    }
-  }
-  (void)d;
-  return MaskKind::None;
-}
-
 PointCloud pointsOf(const CaptureDescription& d, const fs::path& folder, std::vector<std::string>& warnings) {
-  for (const fs::path& file : {folder / "points3D.ply", folder / "sparse/0/points3D.ply"}) {
-    if (!fs::exists(file)) continue;
+  for (const fs::path& file : {folder / "points3D.ply", folder / "sparse/0/points3D.ply", d.points_file}) {
+    if (file.empty() || !fs::is_regular_file(file)) continue;
     try {
       return readPointsPly(file);
     } catch (const Error& e) {
@@ -221,43 +104,119 @@ PointCloud pointsOf(const CaptureDescription& d, const fs::path& folder, std::ve
   return d.points;
 }
 
-}  // namespace
-
-bool isPicture(const fs::path& file) {
-  std::string e = file.extension().string();
-  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return std::tolower(c); });
-  return e == ".png" || e == ".jpg" || e == ".jpeg";
-}
-
-std::map<std::string, fs::path> picturesIn(const fs::path& folder) {
-  std::map<std::string, fs::path> found;
-  if (!fs::is_directory(folder)) return found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && isPicture(entry.path()))
-      found[entry.path().stem().string()] = entry.path();
+// Names by their numbers where all are numbers ("2" before "10"), else as text.
+std::vector<std::string> framesOf(const CaptureDescription& d) {
+  std::set<std::string> names;
+  for (const DescribedCamera& c : d.cameras) {
+    for (const auto& [frame, file] : c.pictures) names.insert(frame);
   }
-  return found;
+  std::vector<std::string> frames(names.begin(), names.end());
+  const auto numeric = [](const std::string& s) {
+    return s.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (std::all_of(frames.begin(), frames.end(), numeric)) {
+    const auto digits = [](const std::string& s) {
+      return s.substr(std::min(s.find_first_not_of('0'), s.size()));
+    };
+    std::stable_sort(frames.begin(), frames.end(), [&](const std::string& a, const std::string& b) {
+      const std::string x = digits(a), y = digits(b);
+      return x.size() != y.size() ? x.size() < y.size() : x < y;
+    });
+  }
+  return frames;
 }
 
-dquat rotationFromMatrix(const dmat3& m, const std::string& where) {
-  const dmat3 square = glm::transpose(m) * m;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (std::abs(square[i][j] - (i == j)) < 1e-3) continue;
-      throw Error(Error::Kind::Data, fmt::format("{}: expected an orthonormal rotation matrix", where));
+// "a, b, c and 12 more".
+std::string shortList(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 5;
+  const std::vector<std::string> first(names.begin(), names.begin() + std::min(names.size(), kShown));
+  const std::string text = fmt::format("{}", fmt::join(first, ", "));
+  return names.size() <= kShown ? text : fmt::format("{} and {} more", text, names.size() - kShown);
+}
+
+// One row of the table: the pictures and masks of a camera by frame.
+std::vector<PictureFiles> filesOf(const DescribedCamera& c, const std::vector<std::string>& frames,
+                                  const fs::path& folder) {
+  std::vector<PictureFiles> row(frames.size());
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const auto picture = c.pictures.find(frames[f]);
+    if (picture == c.pictures.end()) continue;
+    const auto mask = c.masks.find(frames[f]);
+    const bool named = mask != c.masks.end() && fs::exists(mask->second);
+    row[f] = {picture->second, named ? mask->second : findMask(folder, picture->second, c.name)};
+  }
+  return row;
+}
+
+// Says which training pictures and which masks are not there.
+void warnOfGaps(CaptureDescription& d, const PictureTable& files, const std::vector<std::string>& frames,
+                MaskKind kind) {
+  for (std::size_t v = 0; v < files.size(); ++v) {
+    std::vector<std::string> no_picture, no_mask;
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      if (files[v][f].picture.empty()) {
+        no_picture.push_back(frames[f]);
+      } else if (kind == MaskKind::Files && files[v][f].mask.empty()) {
+        no_mask.push_back(frames[f]);
+      }
+    }
+    const std::string& name = d.cameras[v].name;
+    if (!no_picture.empty() && d.cameras[v].split == Split::Train) {
+      d.warnings.push_back(fmt::format("camera {} has no picture of {} {}; solved without it", name,
+                                       no_picture.size() == 1 ? "frame" : "frames", shortList(no_picture)));
+    }
+    if (!no_mask.empty()) {
+      d.warnings.push_back(
+          fmt::format("camera {} has no mask for {} {}; expected one as for the other cameras", name,
+                      no_mask.size() == 1 ? "frame" : "frames", shortList(no_mask)));
     }
   }
-  if (glm::determinant(m) < 0) {
-    throw Error(Error::Kind::Data,
-                fmt::format("{}: the rotation matrix is a mirror (determinant -1)", where));
-  }
-  return glm::normalize(glm::quat_cast(m));
 }
 
-ImportedCapture openCapture(const fs::path& folder, const ImportOptions& options) {
+ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxis up) {
+  ImportedCapture out;
+  CaptureSet& set = out.set;
+  out.layout = d.layout;
+  set.name = d.name;
+  set.frames_per_second = d.frames_per_second;
+  set.up = up;
+  set.frames = framesOf(d);
+  const dmat3 world_from_capture = worldFromCapture(up);
+  const dquat capture_from_world = glm::conjugate(glm::normalize(glm::quat_cast(world_from_capture)));
+  PictureTable files;
+  for (const DescribedCamera& c : d.cameras) {
+    Camera camera = c.camera;
+    camera.camera_from_world.rotation =
+        glm::normalize(c.camera.camera_from_world.rotation * capture_from_world);
+    set.views.push_back({c.name, camera, c.split});
+    files.push_back(filesOf(c, set.frames, folder));
+  }
+  const MaskKind kind = maskKindOf(files);
+  warnOfGaps(d, files, set.frames, kind);
+  set.has_masks = kind != MaskKind::None;
+  set.seed_points = pointsOf(d, folder, d.warnings);
+  for (vec3& p : set.seed_points.position_m) p = vec3(world_from_capture * dvec3(p));
+  for (const char* name : {"environment.exr", "environment.hdr"}) {
+    if (!set.environment_file && fs::exists(folder / name)) set.environment_file = (folder / name).string();
+  }
+  set.source = makeFileFrames(std::move(files), set.views, kind);
+  out.warnings = std::move(d.warnings);
+  return out;
+}
+
+ImportedCapture open(const fs::path& folder, const ImportOptions& options) {
   CaptureDescription d = describedBy(folder);
+  // By name, whatever the order of the file: every Nth camera is then the same one in every description.
+  std::stable_sort(d.cameras.begin(), d.cameras.end(),
+                   [](const DescribedCamera& a, const DescribedCamera& b) { return a.name < b.name; });
   holdOut(d, options.hold_out);
-  for (const DescribedCamera& c : d.cameras) validate(c.camera, c.name);
+  for (const DescribedCamera& c : d.cameras) {
+    try {
+      validate(c.camera, c.name);
+    } catch (const Error& e) {
+      throw Error(Error::Kind::Data, fmt::format("\"{}\", {}: {}", folder.string(), d.layout, e.what()));
+    }
+  }
   dropEmptyCameras(d, folder);
   const std::optional<UpAxis> up = options.up ? options.up : d.up ? d.up : upFromCameras(d);
   if (!up) {
@@ -266,58 +225,20 @@ ImportedCapture openCapture(const fs::path& folder, const ImportOptions& options
                             "+Y, +Z or -Y); say it with --up",
                             folder.string()));
   }
-  ImportedCapture out;
-  CaptureSet& set = out.set;
-  out.layout = d.layout;
-  set.name = d.name;
-  set.frames_per_second = d.frames_per_second;
-  set.up = *up;
-  const dmat3 world_from_capture = worldFromCapture(*up);
-  const dquat capture_from_world = glm::conjugate(glm::normalize(glm::quat_cast(world_from_capture)));
-  std::set<std::string> frames;
-  for (const DescribedCamera& c : d.cameras) {
-    for (const auto& [frame, file] : c.pictures) frames.insert(frame);
+  return importedFrom(std::move(d), folder, *up);
+}
+
+}  // namespace
+
+ImportedCapture openCapture(const fs::path& folder, const ImportOptions& options) {
+  try {
+    ImportedCapture capture = open(folder, options);
+    for (const std::string& w : capture.warnings) logWarning("{}", w);
+    return capture;
+  } catch (const fs::filesystem_error& e) {
+    throw Error(Error::Kind::Storage,
+                fmt::format("\"{}\": the capture cannot be read: {}", folder.string(), e.what()));
   }
-  set.frames.assign(frames.begin(), frames.end());
-  std::vector<std::vector<PictureFiles>> files;
-  std::vector<std::string> names;
-  std::vector<Camera> cameras;
-  for (const DescribedCamera& c : d.cameras) {
-    Camera camera = c.camera;
-    camera.camera_from_world.rotation =
-        glm::normalize(c.camera.camera_from_world.rotation * capture_from_world);
-    set.views.push_back({c.name, camera, c.split});
-    names.push_back(c.name);
-    cameras.push_back(camera);
-    std::vector<PictureFiles> row(set.frames.size());
-    for (std::size_t f = 0; f < set.frames.size(); ++f) {
-      const auto picture = c.pictures.find(set.frames[f]);
-      if (picture == c.pictures.end()) {
-        if (c.split == Split::Train) {
-          d.warnings.push_back(
-              fmt::format("\"{}\": camera {} has no picture of frame {}; the frame is solved without it",
-                          folder.string(), c.name, set.frames[f]));
-        }
-        continue;
-      }
-      const auto mask = c.masks.find(set.frames[f]);
-      row[f] = {picture->second, mask != c.masks.end() && fs::exists(mask->second)
-                                     ? mask->second
-                                     : findMask(folder, picture->second, c.name)};
-    }
-    files.push_back(std::move(row));
-  }
-  const MaskKind kind = maskKindOf(d, files);
-  set.has_masks = kind != MaskKind::None;
-  set.seed_points = pointsOf(d, folder, d.warnings);
-  for (vec3& p : set.seed_points.position_m) p = vec3(world_from_capture * dvec3(p));
-  for (const char* name : {"environment.exr", "environment.hdr"}) {
-    if (!set.environment_file && fs::exists(folder / name)) set.environment_file = (folder / name).string();
-  }
-  set.source = std::make_shared<FileFrames>(std::move(files), std::move(names), std::move(cameras), kind);
-  for (const std::string& w : d.warnings) logWarning("{}", w);
-  out.warnings = std::move(d.warnings);
-  return out;
 }
 
 }  // namespace beam

@@ -2,8 +2,10 @@
 // COLMAP sparse models, binary before text (ecosystem 1.1). Pinhole kinds only.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <set>
 #include <sstream>
@@ -37,7 +39,7 @@ constexpr std::array<ModelKind, 18> kModels = {{{"SIMPLE_PINHOLE", 3},
                                                 {"DIVISION", 5},
                                                 {"SIMPLE_FISHEYE", 3},
                                                 {"FISHEYE", 4},
-                                                {"EUCM", 5},
+                                                {"EUCM", 6},
                                                 {"EQUIRECTANGULAR", 2}}};
 
 struct ColmapCamera {
@@ -45,13 +47,14 @@ struct ColmapCamera {
   int width = 0, height = 0;
 };
 struct ColmapImage {
-  std::uint32_t camera = 0;
+  std::uint32_t id = 0, camera = 0;
   Rigid3 camera_from_world;
   std::string name;
 };
 struct ColmapModel {
   std::map<std::uint32_t, ColmapCamera> cameras;
   std::vector<ColmapImage> images;
+  std::map<std::uint32_t, std::string> camera_of_image;  // by image id
   PointCloud points;
 };
 
@@ -59,41 +62,74 @@ struct ColmapModel {
   throw Error(Error::Kind::Data, fmt::format("\"{}\": {}", path.string(), what));
 }
 
+// Models 0 to 4 and 6 are pinholes with (fx fy or one f) cx cy first and distortion behind; distortion 0 is
+// what undistorters that keep the model write.
+Intrinsics pinholeOf(const std::filesystem::path& path, std::uint32_t id, int model,
+                     const std::vector<double>& p) {
+  const bool one_focal = model == 0 || model == 2 || model == 3;
+  const bool perspective = model <= 4 || model == 6;
+  const auto distortion = p.begin() + (one_focal ? 3 : 4);
+  if (!perspective || std::any_of(distortion, p.end(), [](double v) { return v != 0; })) {
+    bad(path, fmt::format("camera {} has the model {}; only SIMPLE_PINHOLE and PINHOLE are supported yet: "
+                          "undistort the pictures (colmap image_undistorter) and use that model",
+                          id, kModels[model].name));
+  }
+  return one_focal ? Intrinsics{p[0], p[0], p[1], p[2]} : Intrinsics{p[0], p[1], p[2], p[3]};
+}
+
 void addCamera(ColmapModel& m, const std::filesystem::path& path, std::uint32_t id, int model, double w,
                double h, const std::vector<double>& p) {
-  const std::string name = kModels[model].name;
-  if (model > 1) {
-    bad(path,
-        fmt::format(
-            "camera {} has the model {}; only SIMPLE_PINHOLE and PINHOLE are supported yet: undistort the "
-            "pictures (colmap image_undistorter) and use that model",
-            id, name));
-  }
-  ColmapCamera c;
   if (!(w >= 1 && w <= 65536 && h >= 1 && h <= 65536))
     bad(path, fmt::format("camera {} has the size {} x {}", id, w, h));
-  c.width = static_cast<int>(w);
-  c.height = static_cast<int>(h);
-  c.intrinsics = model == 0 ? Intrinsics{p[0], p[0], p[1], p[2]} : Intrinsics{p[0], p[1], p[2], p[3]};
+  for (const double v : p) {
+    if (!std::isfinite(v)) bad(path, fmt::format("camera {}: expected finite parameters, found {}", id, v));
+  }
+  const ColmapCamera c{pinholeOf(path, id, model, p), static_cast<int>(w), static_cast<int>(h)};
+  if (!(c.intrinsics.fx > 0 && c.intrinsics.fy > 0)) {
+    bad(path, fmt::format("camera {}: expected a positive focal length, found {} and {}", id, c.intrinsics.fx,
+                          c.intrinsics.fy));
+  }
   if (!m.cameras.emplace(id, c).second) bad(path, fmt::format("camera id {} stands twice", id));
 }
 
-void addImage(ColmapModel& m, const std::filesystem::path& path, const std::array<double, 7>& pose,
-              std::uint32_t camera, const std::string& name) {
-  for (const double v : pose) {
-    if (!std::isfinite(v)) bad(path, fmt::format("image \"{}\" has a pose that is not finite", name));
-  }
-  const dquat q(pose[0], pose[1], pose[2], pose[3]);
-  const double norm = std::sqrt(glm::dot(q, q));
-  if (std::abs(norm - 1) > 1e-2)
-    bad(path, fmt::format("image \"{}\": expected a unit quaternion, its norm is {}", name, norm));
-  if (!m.cameras.contains(camera))
-    bad(path, fmt::format("image \"{}\" names camera {}, which is not there", name, camera));
-  m.images.push_back({camera, {q / norm, dvec3(pose[4], pose[5], pose[6])}, name});
+// A name may be a camera folder, camera/frame.ext, or a plain file (contract: import).
+std::string cameraNameOf(const std::string& image_name) {
+  const std::filesystem::path name(image_name);
+  if (!isPicture(name)) return image_name;
+  return name.has_parent_path() ? name.parent_path().string() : name.stem().string();
 }
 
-void addPoint(ColmapModel& m, dvec3 x, u8vec3 color, std::size_t views) {
-  if (views < 2 || !std::isfinite(x.x + x.y + x.z)) return;
+struct ImageRecord {
+  std::uint32_t id = 0, camera = 0;
+  std::array<double, 7> pose{};  // qw qx qy qz tx ty tz
+  std::string name;
+};
+
+void addImage(ColmapModel& m, const std::filesystem::path& path, const ImageRecord& r) {
+  requirePlainName(r.name, fmt::format("\"{}\"", path.string()));
+  for (const double v : r.pose) {
+    if (!std::isfinite(v)) bad(path, fmt::format("image \"{}\" has a pose that is not finite", r.name));
+  }
+  const dquat q(r.pose[0], r.pose[1], r.pose[2], r.pose[3]);
+  const double norm = std::sqrt(glm::dot(q, q));
+  if (std::abs(norm - 1) > 1e-2)
+    bad(path, fmt::format("image \"{}\": expected a unit quaternion, its norm is {}", r.name, norm));
+  if (!m.cameras.contains(r.camera))
+    bad(path, fmt::format("image \"{}\" names camera {}, which is not there", r.name, r.camera));
+  if (!m.camera_of_image.emplace(r.id, cameraNameOf(r.name)).second)
+    bad(path, fmt::format("image id {} stands twice", r.id));
+  m.images.push_back({r.id, r.camera, {q / norm, dvec3(r.pose[4], r.pose[5], r.pose[6])}, r.name});
+}
+
+// Points that fewer than two cameras see are dropped; a track may name images that are gone.
+void addPoint(ColmapModel& m, dvec3 x, u8vec3 color, const std::set<std::uint32_t>& track) {
+  std::set<std::string> seen_by;
+  for (const std::uint32_t image : track) {
+    const auto found = m.camera_of_image.find(image);
+    if (found != m.camera_of_image.end()) seen_by.insert(found->second);
+    if (seen_by.size() == 2) break;
+  }
+  if (seen_by.size() < 2 || !std::isfinite(x.x + x.y + x.z)) return;
   m.points.position_m.emplace_back(x);
   m.points.color.push_back(color);
 }
@@ -150,13 +186,13 @@ ColmapModel readBinary(const std::filesystem::path& folder) {
   }
   BinaryReader i(folder / "images.bin");
   for (std::uint64_t n = i.count(73, "images"); n > 0; --n) {
-    i.get<std::uint32_t>();
-    std::array<double, 7> pose;
-    for (double& v : pose) v = i.get<double>();
-    const auto camera = i.get<std::uint32_t>();
-    const std::string name = i.text();
+    ImageRecord r;
+    r.id = i.get<std::uint32_t>();
+    for (double& v : r.pose) v = i.get<double>();
+    r.camera = i.get<std::uint32_t>();
+    r.name = i.text();
     i.skip(i.count(24, "points of an image") * 24);
-    addImage(m, i.path(), pose, camera, name);
+    addImage(m, i.path(), r);
   }
   if (!std::filesystem::exists(folder / "points3D.bin")) return m;
   BinaryReader p(folder / "points3D.bin");
@@ -172,7 +208,7 @@ ColmapModel readBinary(const std::filesystem::path& folder) {
       seen.insert(p.get<std::uint32_t>());
       p.get<std::uint32_t>();
     }
-    addPoint(m, x, color, seen.size());
+    addPoint(m, x, color, seen);
   }
   return m;
 }
@@ -186,6 +222,15 @@ std::vector<std::string> linesOf(const std::filesystem::path& path) {
     if (line.empty() || line[0] != '#') lines.push_back(line);
   }
   return lines;
+}
+
+// Streams refuse "nan", which then could not be named; a word that is no number counts as one.
+double numberIn(std::istream& in) {
+  std::string word;
+  in >> word;
+  char* end = nullptr;
+  const double v = std::strtod(word.c_str(), &end);
+  return word.empty() || *end != '\0' ? std::nan("") : v;
 }
 
 void readTextCameras(ColmapModel& m, const std::filesystem::path& path) {
@@ -202,8 +247,8 @@ void readTextCameras(ColmapModel& m, const std::filesystem::path& path) {
     }
     if (!in || model < 0) bad(path, fmt::format("cannot understand the camera \"{}\"", line));
     std::vector<double> p;
-    for (std::string word; in >> word;) p.push_back(std::strtod(word.c_str(), nullptr));
-    if (static_cast<int>(p.size()) < kModels[model].parameters) {
+    while (in >> std::ws && in.peek() != std::istringstream::traits_type::eof()) p.push_back(numberIn(in));
+    if (static_cast<int>(p.size()) != kModels[model].parameters) {
       bad(path, fmt::format("camera {}: expected {} parameters, found {}", id, kModels[model].parameters,
                             p.size()));
     }
@@ -217,19 +262,13 @@ void readTextImages(ColmapModel& m, const std::filesystem::path& path) {
     while (i < lines.size() && lines[i].empty()) ++i;
     if (i >= lines.size()) break;
     std::istringstream in(lines[i]);
-    std::string word;
-    std::array<double, 7> pose;
-    in >> word;
-    for (double& v : pose) {
-      in >> word;
-      v = std::strtod(word.c_str(), nullptr);
-    }
-    std::uint32_t camera = 0;
-    in >> camera;
-    std::string name;
-    std::getline(in >> std::ws, name);
-    if (name.empty()) bad(path, fmt::format("cannot understand the image \"{}\"", lines[i]));
-    addImage(m, path, pose, camera, name);
+    ImageRecord r;
+    in >> r.id;
+    for (double& v : r.pose) v = numberIn(in);
+    in >> r.camera;
+    std::getline(in >> std::ws, r.name);  // a name runs to the end of its line, blanks and all
+    if (r.name.empty()) bad(path, fmt::format("cannot understand the image \"{}\"", lines[i]));
+    addImage(m, path, r);
   }
 }
 
@@ -247,40 +286,29 @@ ColmapModel readText(const std::filesystem::path& folder) {
     if (!(in >> id >> x.x >> x.y >> x.z >> r >> g >> b >> error)) continue;
     std::set<std::uint32_t> seen;
     for (std::uint32_t image = 0, point = 0; in >> image >> point;) seen.insert(image);
-    addPoint(m, x, u8vec3(r, g, b), seen.size());
+    addPoint(m, x, u8vec3(r, g, b), seen);
   }
   return m;
 }
 
-// A name may be a camera folder, camera/frame.ext, or a plain file (contract: import).
 void addPictures(CaptureDescription& d, const ColmapModel& m, const std::filesystem::path& pictures,
                  const std::filesystem::path& model_folder) {
   std::map<std::string, std::size_t> index;
   for (const ColmapImage& i : m.images) {
-    const std::filesystem::path file = pictures / i.name;
-    const std::filesystem::path relative(i.name);
+    const std::string& name = m.camera_of_image.at(i.id);
+    const std::filesystem::path file = pictures / i.name, relative(i.name);
     std::map<std::string, std::filesystem::path> found;
-    std::string name = i.name;
     if (std::filesystem::is_directory(file)) {
       found = picturesIn(file);
     } else if (isPicture(file)) {
-      name = relative.has_parent_path() ? relative.parent_path().string() : relative.stem().string();
       found[relative.has_parent_path() ? relative.stem().string() : "000000"] = file;
     }
     const ColmapCamera& c = m.cameras.at(i.camera);
     const Camera camera{c.intrinsics, c.width, c.height, i.camera_from_world};
-    if (!index.contains(name)) {
-      index[name] = d.cameras.size();
-      d.cameras.push_back({name, camera, Split::Train, {}, {}});
-    }
-    DescribedCamera& described = d.cameras[index[name]];
-    const dvec3 moved = centerOf(described.camera) - centerOf(camera);
-    if (glm::length(moved) > 1e-3) {
-      bad(model_folder,
-          fmt::format(
-              "camera \"{}\" moves between its pictures by {:.3f} m; expected cameras that stand still", name,
-              glm::length(moved)));
-    }
+    const auto [place, fresh] = index.emplace(name, d.cameras.size());
+    if (fresh) d.cameras.push_back({name, camera, Split::Train, {}, {}});
+    DescribedCamera& described = d.cameras[place->second];
+    requireStill(described, camera, fmt::format("\"{}\"", model_folder.string()));
     described.pictures.insert(found.begin(), found.end());
   }
 }
@@ -299,7 +327,8 @@ std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& f
     CaptureDescription d;
     d.layout = binary ? "COLMAP binary" : "COLMAP text";
     d.name = folder.filename().string();
-    addPictures(d, m, folder / "images", model);
+    const std::filesystem::path pictures = folder / "images";
+    addPictures(d, m, std::filesystem::is_directory(pictures) ? pictures : folder, model);
     d.points = m.points;
     return d;
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // dataset.json: everything of a capture in one file; x_camera = R x_capture + t, OpenCV axes.
+#include <cmath>
+
 #include "core/io/capture_description.h"
 #include "core/io/json_reader.h"
 
@@ -27,8 +29,9 @@ DescribedCamera cameraOf(const std::string& name, const nlohmann::json& c,
   const std::string where = fmt::format("\"{}\", camera \"{}\"", file.string(), name);
   DescribedCamera d;
   d.name = name;
-  d.camera.width = static_cast<int>(finiteNumber(c, "width", where));
-  d.camera.height = static_cast<int>(finiteNumber(c, "height", where));
+  requirePlainName(name, where);
+  d.camera.width = pictureSide(c, "width", where);
+  d.camera.height = pictureSide(c, "height", where);
   d.camera.intrinsics = {finiteNumber(c, "fx", where), finiteNumber(c, "fy", where),
                          finiteNumber(c, "cx", where), finiteNumber(c, "cy", where)};
   if (!c.contains("R")) throw Error(Error::Kind::Data, fmt::format("{}: expected a rotation R", where));
@@ -55,19 +58,15 @@ std::optional<UpAxis> upOf(const nlohmann::json& j) {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<CaptureDescription> readDatasetJson(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "dataset.json";
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  const nlohmann::json j = readJson(file);
+CaptureDescription describe(const nlohmann::json& j, const std::filesystem::path& folder,
+                            const std::filesystem::path& file) {
   if (!j.is_object() || !j.contains("cameras") || !j["cameras"].is_object()) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\": expected an object \"cameras\"", file.string()));
   }
   CaptureDescription d;
   d.layout = "dataset.json";
   d.name = j.value("name", folder.filename().string());
-  d.frames_per_second = j.value("fps", 30.0);
+  if (j.contains("fps")) d.frames_per_second = finiteNumber(j, "fps", fmt::format("\"{}\"", file.string()));
   d.up = upOf(j);
   for (const auto& [name, camera] : j["cameras"].items()) {
     DescribedCamera c = cameraOf(name, camera, file);
@@ -75,6 +74,14 @@ std::optional<CaptureDescription> readDatasetJson(const std::filesystem::path& f
     d.cameras.push_back(std::move(c));
   }
   return d;
+}
+
+}  // namespace
+
+std::optional<CaptureDescription> readDatasetJson(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "dataset.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return withJsonErrors(file, [&] { return describe(readJson(file), folder, file); });
 }
 
 }  // namespace beam

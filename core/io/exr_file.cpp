@@ -8,25 +8,24 @@
 #include <ImfOutputFile.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
+#include <set>
 
 #include "core/base/error.h"
+#include "core/io/exr_header.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
 
 namespace beam {
 namespace {
 
-constexpr int kMaxSide = 16384;
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
-
 class MemoryIn final : public Imf::IStream {
  public:
   MemoryIn(const std::string& name, std::vector<std::byte> bytes)
       : IStream(name.c_str()), bytes_(std::move(bytes)) {}
   bool read(char c[], int n) override {
-    if (n < 0 || at_ + static_cast<std::size_t>(n) > bytes_.size())
+    // The position comes from the file and may lie anywhere: no sum of it with `n`, which could wrap.
+    if (n < 0 || at_ > bytes_.size() || static_cast<std::size_t>(n) > bytes_.size() - at_)
       throw std::runtime_error("the file ends early");
     std::memcpy(c, bytes_.data() + at_, static_cast<std::size_t>(n));
     at_ += static_cast<std::size_t>(n);
@@ -65,11 +64,8 @@ class MemoryOut final : public Imf::OStream {
 template <class Body>
 auto withExr(const std::filesystem::path& path, Body&& body) {
   std::vector<std::byte> bytes = readFile(path, 1ull << 31);
-  if (bytes.empty()) bad(path, "the file is empty; expected an OpenEXR picture");
-  constexpr unsigned char kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
-  if (bytes.size() < 8 || std::memcmp(bytes.data(), kMagic, 4) != 0) bad(path, "expected an OpenEXR picture");
+  checkExrHeader(bytes, path);
   try {
-    Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);
     MemoryIn stream(path.string(), std::move(bytes));
     Imf::InputFile file(stream, 0);
     return body(file);
@@ -88,16 +84,29 @@ std::vector<std::string> namesIn(const Imf::Header& header) {
   return names;
 }
 
-// The stored channel for `wanted`: itself, or the only one of a layer that ends in ".wanted".
-std::string storedName(const std::vector<std::string>& names, const std::string& wanted,
-                       const std::filesystem::path& path) {
-  std::vector<std::string> layered;
+// The stored channels for `wanted`: of these very names, else of the only layer that has them all ("env.R").
+std::vector<std::string> storedNames(const std::vector<std::string>& names,
+                                     const std::vector<std::string>& wanted,
+                                     const std::filesystem::path& path) {
+  const std::set<std::string> stored(names.begin(), names.end());
+  const auto of = [&](const std::string& layer) {
+    std::vector<std::string> found;
+    for (const std::string& w : wanted) {
+      if (stored.contains(layer + w)) found.push_back(layer + w);
+    }
+    return found;
+  };
+  if (of("").size() == wanted.size()) return wanted;
+  std::set<std::string> layers;
   for (const std::string& n : names) {
-    if (n == wanted) return n;
-    if (n.size() > wanted.size() + 1 && n.ends_with("." + wanted)) layered.push_back(n);
+    const std::string layer = n.substr(0, n.rfind('.') + 1);
+    if (!layer.empty() && of(layer).size() == wanted.size()) layers.insert(layer);
   }
-  if (!layered.empty()) return layered.front();
-  bad(path, fmt::format("expected a channel {}, found {}", wanted, fmt::join(names, " ")));
+  if (layers.size() == 1) return of(*layers.begin());
+  const bool chroma = stored.contains("RY") || stored.contains("BY");
+  bad(path, fmt::format("expected channels {}, found {}{}{}", fmt::join(wanted, " "), fmt::join(names, " "),
+                        layers.empty() ? "" : "; more than one layer has them: save one layer",
+                        chroma ? "; the picture is luminance-chroma: save it as RGB" : ""));
 }
 
 }  // namespace
@@ -109,31 +118,25 @@ std::vector<std::string> exrChannels(const std::filesystem::path& path) {
 Planes readExr(const std::filesystem::path& path, const std::vector<std::string>& channels) {
   return withExr(path, [&](Imf::InputFile& file) {
     const Imath::Box2i window = file.header().dataWindow(), display = file.header().displayWindow();
-    const std::int64_t w = std::int64_t{display.max.x} - display.min.x + 1,
-                       h = std::int64_t{display.max.y} - display.min.y + 1;
-    const std::int64_t dw = std::int64_t{window.max.x} - window.min.x + 1,
-                       dh = std::int64_t{window.max.y} - window.min.y + 1;
-    if (std::min({w, h, dw, dh}) < 1 || std::max({w, h, dw, dh}) > kMaxSide ||
-        std::max(w * h, dw * dh) > kMaxPixels) {
-      bad(path, fmt::format("expected 1 to {} pixels a side, found {} x {}", kMaxSide, w, h));
-    }
-    const std::vector<std::string> names = namesIn(file.header());
-    Planes data(static_cast<int>(dw), static_cast<int>(dh), static_cast<int>(channels.size()));
+    const int w = display.max.x - display.min.x + 1, h = display.max.y - display.min.y + 1;
+    const int dw = window.max.x - window.min.x + 1, dh = window.max.y - window.min.y + 1;
+    const std::vector<std::string> stored = storedNames(namesIn(file.header()), channels, path);
+    Planes data(dw, dh, static_cast<int>(channels.size()));
     Imf::FrameBuffer frame;
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      const std::string name = storedName(names, channels[c], path);
+      const std::string& name = stored[c];
       const Imf::Channel* channel = file.header().channels().findChannel(name.c_str());
       if (channel->xSampling != 1 || channel->ySampling != 1) {
         bad(path, fmt::format("channel {} is subsampled (luminance-chroma); save the picture as RGB", name));
       }
       char* base = reinterpret_cast<char*>(data.plane(static_cast<int>(c))) -
-                   (static_cast<std::ptrdiff_t>(window.min.y) * dw + window.min.x) * 4;
+                   (static_cast<std::ptrdiff_t>(window.min.y) * dw + window.min.x) * std::ptrdiff_t{4};
       frame.insert(name.c_str(), Imf::Slice(Imf::FLOAT, base, 4, static_cast<std::size_t>(dw) * 4));
     }
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
     if (window == display) return data;
-    Planes out(static_cast<int>(w), static_cast<int>(h), data.channels);
+    Planes out(w, h, data.channels);
     for (int y = 0; y < out.height; ++y) {
       for (int x = 0; x < out.width; ++x) {
         const int sx = x + display.min.x - window.min.x, sy = y + display.min.y - window.min.y;

@@ -58,7 +58,8 @@ std::uint64_t regularFileSize(int fd, const std::filesystem::path& path, std::ui
 
 template <class Buffer>
 Buffer readWhole(const std::filesystem::path& path, std::uint64_t max_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // O_NONBLOCK: a pipe in the place of a file is refused, not waited for.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) {
     throw Error(Error::Kind::Data,
                 fmt::format("cannot open \"{}\": {}", path.string(), std::strerror(errno)));

@@ -77,19 +77,44 @@ void checkSize(const ImageSize& s, const Bytes& b, const std::filesystem::path& 
   }
 }
 
-// Decoders hand out half a picture for a truncated file: the end marker must be there.
-void checkEnd(const Bytes& b, const std::filesystem::path& path) {
-  if (isPng(b)) {
-    for (std::size_t i = b.size() - 8; i > 32; --i) {
-      if (std::memcmp(&b[i], "IEND", 4) == 0) return;
-      if (b.size() - i > 4096) break;
+// Whether the chunks of a PNG follow one another up to its end chunk.
+bool pngEnds(const Bytes& b) {
+  for (std::size_t i = 8; b.size() - i >= 12;) {
+    const std::uint64_t length = big32(b, i);
+    if (length > b.size() - i - 12) return false;
+    if (std::memcmp(&b[i + 4], "IEND", 4) == 0) return true;
+    i += length + 12;
+  }
+  return false;
+}
+
+// Whether the last scan of a JPEG is followed by its end marker; the one of a thumbnail in the header does
+// not count.
+bool jpegEnds(const Bytes& b) {
+  bool in_scan = false;
+  for (std::size_t i = 2; i + 1 < b.size();) {
+    const unsigned marker = at(b, i + 1);
+    const bool data = at(b, i) != 0xff || marker == 0 || marker == 0xff || (marker >= 0xd0 && marker <= 0xd7);
+    if (data) {
+      if (!in_scan && at(b, i) != 0xff) return false;
+      ++i;
+    } else if (marker == 0xd9) {
+      return in_scan;
+    } else {
+      if (i + 3 >= b.size()) return false;
+      in_scan = marker == 0xda || in_scan;
+      i += 2 + big16(b, i + 2);
     }
-    bad(path, "expected a PNG's end chunk, found none; the file is truncated, copy it again");
   }
-  for (std::size_t i = b.size() - 2; i > 2 && b.size() - i < 65536; --i) {
-    if (at(b, i) == 0xff && at(b, i + 1) == 0xd9) return;
-  }
-  bad(path, "expected a JPEG's end marker, found none; the file is truncated, copy it again");
+  return false;
+}
+
+// Decoders hand out half a picture for a truncated file: the end must be there.
+void checkEnd(const Bytes& b, const std::filesystem::path& path) {
+  const bool png = isPng(b);
+  if (png ? pngEnds(b) : jpegEnds(b)) return;
+  bad(path, fmt::format("expected the end of a {} picture, found none; the file is truncated, copy it again",
+                        png ? "PNG" : "JPEG"));
 }
 
 // 8 bits a channel; as many channels as stored, in OpenCV's order.
@@ -135,6 +160,14 @@ ImageSize readImageSize(const std::filesystem::path& path) {
   return s;
 }
 
+ImageSize checkImageFile(const std::filesystem::path& path) {
+  const Bytes b = readFile(path, kMaxFile);
+  const ImageSize s = sizeOf(b, path);
+  checkSize(s, b, path);
+  checkEnd(b, path);
+  return s;
+}
+
 Image<u8vec3> readPhoto(const std::filesystem::path& path) {
   const cv::Mat m = decode(path);
   const int channels = m.channels();
@@ -167,10 +200,13 @@ Image<vec3> readRadiance(const std::filesystem::path& path) {
                  [](unsigned char c) { return std::tolower(c); });
   if (extension == ".hdr" || extension == ".pic") return readRadianceHdr(path);
   if (extension != ".exr") bad(path, "expected a panorama as .exr or .hdr");
-  const Planes p = readExr(path, {"R", "G", "B"});
+  const std::vector<std::string> stored = exrChannels(path);
+  const bool gray = stored == std::vector<std::string>{"Y"} || stored == std::vector<std::string>{"A", "Y"};
+  const Planes p =
+      readExr(path, gray ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"});
   Image<vec3> out(p.width, p.height, vec3(0), Encoding::Linear);
   for (std::size_t i = 0; i < out.pixels.size(); ++i) {
-    out.pixels[i] = {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]};
+    out.pixels[i] = gray ? vec3(p.plane(0)[i]) : vec3(p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]);
   }
   return out;
 }

@@ -19,6 +19,8 @@ struct ImageSize {
 
 // Size from the header alone (PNG, JPEG).
 ImageSize readImageSize(const std::filesystem::path& path);
+// The same, and throws when the picture's end is not there; decodes nothing.
+ImageSize checkImageFile(const std::filesystem::path& path);
 
 // 8-bit sRGB picture, alpha dropped.
 Image<u8vec3> readPhoto(const std::filesystem::path& path);
@@ -26,10 +28,11 @@ Image<u8vec3> readPhoto(const std::filesystem::path& path);
 Image<std::uint8_t> readMask(const std::filesystem::path& path);
 Image<std::uint8_t> readAlpha(const std::filesystem::path& path);
 
-// Linear RGB of an .exr or .hdr file.
+// Linear RGB of an .exr or .hdr file; an .exr that has luminance alone is gray.
 Image<vec3> readRadiance(const std::filesystem::path& path);
 
-// Float planes of an EXR file in order of `channels`; throws when one is missing.
+// Float planes of an EXR file in order of `channels`, over its display window (0 where the file has no data);
+// channels of a layer ("env.R") serve when the plain names are missing and one layer has them all.
 Planes readExr(const std::filesystem::path& path, const std::vector<std::string>& channels);
 std::vector<std::string> exrChannels(const std::filesystem::path& path);
 

@@ -20,15 +20,14 @@ void append(std::string& out, const T& value) {
 }
 
 std::vector<vec3> positionsOf(const PlyElement& vertex, const std::filesystem::path& path) {
-  const auto* x = vertex.column("x");
-  const auto* y = vertex.column("y");
-  const auto* z = vertex.column("z");
+  const auto x = vertex.column("x"), y = vertex.column("y"), z = vertex.column("z");
   if (!x || !y || !z) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\": expected vertices with x, y and z", path.string()));
   }
   std::vector<vec3> out(vertex.count);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = {static_cast<float>((*x)[i]), static_cast<float>((*y)[i]), static_cast<float>((*z)[i])};
+    const float* row = vertex.row(i);
+    out[i] = {row[*x], row[*y], row[*z]};
     if (!(std::isfinite(out[i].x) && std::isfinite(out[i].y) && std::isfinite(out[i].z))) {
       throw Error(Error::Kind::Data, fmt::format("\"{}\": vertex {} is not finite", path.string(), i));
     }
@@ -97,13 +96,12 @@ PointCloud readPointsPly(const std::filesystem::path& path) {
   const PlyElement& vertex = vertexOf(elements, path);
   PointCloud points;
   points.position_m = positionsOf(vertex, path);
-  const auto* r = vertex.column("red");
-  const auto* g = vertex.column("green");
-  const auto* b = vertex.column("blue");
+  const auto r = vertex.column("red"), g = vertex.column("green"), b = vertex.column("blue");
   if (!r || !g || !b) return points;
   points.color.resize(points.position_m.size());
   for (std::size_t i = 0; i < points.color.size(); ++i) {
-    points.color[i] = u8vec3(glm::clamp(dvec3((*r)[i], (*g)[i], (*b)[i]), 0.0, 255.0));
+    const float* row = vertex.row(i);
+    points.color[i] = u8vec3(glm::clamp(vec3(row[*r], row[*g], row[*b]), 0.0f, 255.0f));
   }
   return points;
 }

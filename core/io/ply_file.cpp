@@ -8,6 +8,7 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <map>
 #include <sstream>
 
 #include "core/base/error.h"
@@ -18,23 +19,36 @@ namespace {
 
 constexpr std::uint64_t kMaxFile = 8ull << 30;
 constexpr std::size_t kMaxCount = 1u << 26;
+constexpr std::size_t kMaxProperties = 1024, kMaxElements = 64;
 
 enum class Format { Ascii, Little, Big };
 
-std::string canonicalType(const std::string& t) {
-  static const std::map<std::string, std::string> kNames = {
-      {"char", "char"},   {"int8", "char"},     {"uchar", "uchar"},   {"uint8", "uchar"},
-      {"short", "short"}, {"int16", "short"},   {"ushort", "ushort"}, {"uint16", "ushort"},
-      {"int", "int"},     {"int32", "int"},     {"uint", "uint"},     {"uint32", "uint"},
-      {"float", "float"}, {"float32", "float"}, {"double", "double"}, {"float64", "double"}};
-  const auto found = kNames.find(t);
-  return found == kNames.end() ? "" : found->second;
+std::optional<PlyType> typeOf(const std::string& name) {
+  static const std::map<std::string, PlyType> kNames = {
+      {"char", PlyType::Char},     {"int8", PlyType::Char},     {"uchar", PlyType::UChar},
+      {"uint8", PlyType::UChar},   {"short", PlyType::Short},   {"int16", PlyType::Short},
+      {"ushort", PlyType::UShort}, {"uint16", PlyType::UShort}, {"int", PlyType::Int},
+      {"int32", PlyType::Int},     {"uint", PlyType::UInt},     {"uint32", PlyType::UInt},
+      {"float", PlyType::Float},   {"float32", PlyType::Float}, {"double", PlyType::Double},
+      {"float64", PlyType::Double}};
+  const auto found = kNames.find(name);
+  if (found == kNames.end()) return std::nullopt;
+  return found->second;
 }
 
-std::size_t sizeOfType(const std::string& t) {
-  if (t == "char" || t == "uchar") return 1;
-  if (t == "short" || t == "ushort") return 2;
-  return t == "double" ? 8 : 4;
+std::size_t sizeOfType(PlyType t) {
+  switch (t) {
+    case PlyType::Char:
+    case PlyType::UChar:
+      return 1;
+    case PlyType::Short:
+    case PlyType::UShort:
+      return 2;
+    case PlyType::Double:
+      return 8;
+    default:
+      return 4;
+  }
 }
 
 class PlyReader {
@@ -79,6 +93,7 @@ class PlyReader {
                   : word == "binary_little_endian" ? Format::Little
                                                    : Format::Big;
       } else if (word == "element") {
+        if (elements_.size() == kMaxElements) bad(fmt::format("more than {} elements", kMaxElements));
         PlyElement e;
         long long count = -1;
         in >> e.name >> count;
@@ -93,24 +108,30 @@ class PlyReader {
 
   void property(std::istringstream& in, const std::string& text) {
     if (elements_.empty()) bad("a property stands before any element");
+    PlyElement& e = elements_.back();
+    if (e.properties.size() == kMaxProperties) bad(fmt::format("more than {} properties", kMaxProperties));
     PlyProperty p;
-    in >> p.type;
-    if (p.type == "list") {
-      in >> p.list_type >> p.type;
-      p.list_type = canonicalType(p.list_type);
-      if (p.list_type.empty()) bad(fmt::format("unknown type in \"{}\"", text));
+    std::string word;
+    in >> word;
+    if (word == "list") {
+      in >> word;
+      p.count_type = typeOf(word);
+      if (!p.count_type) bad(fmt::format("unknown type in \"{}\"", text));
+      in >> word;
     }
-    p.type = canonicalType(p.type);
+    const std::optional<PlyType> type = typeOf(word);
     in >> p.name;
-    if (p.type.empty() || p.name.empty()) bad(fmt::format("cannot understand \"{}\"", text));
-    elements_.back().properties.push_back(std::move(p));
+    if (!type || p.name.empty()) bad(fmt::format("cannot understand \"{}\"", text));
+    p.type = *type;
+    e.columns += p.count_type ? 0 : 1;
+    e.properties.push_back(std::move(p));
   }
 
   // The count against the bytes that are left, before anything is allocated.
   void checkCount(const PlyElement& e) const {
     std::size_t least = 0;
     for (const PlyProperty& p : e.properties) {
-      least += format_ == Format::Ascii ? 2 : sizeOfType(p.list_type.empty() ? p.type : p.list_type);
+      least += format_ == Format::Ascii ? 2 : sizeOfType(p.count_type.value_or(p.type));
     }
     const std::size_t left = bytes_.size() - at_ + 1;
     if (e.count > kMaxCount || (least > 0 && e.count > left / least)) {
@@ -121,39 +142,53 @@ class PlyReader {
   }
 
   void body(PlyElement& e) {
-    bool has_list = false;
-    for (const PlyProperty& p : e.properties) has_list |= !p.list_type.empty();
-    e.columns.assign(e.properties.size(), {});
-    for (std::size_t c = 0; c < e.properties.size(); ++c) {
-      if (e.properties[c].list_type.empty()) e.columns[c].reserve(e.count);
+    const bool as_stored = format_ == Format::Little &&
+                           std::all_of(e.properties.begin(), e.properties.end(), [](const PlyProperty& p) {
+                             return p.type == PlyType::Float && !p.count_type;
+                           });
+    e.values.resize(e.count * e.columns);
+    if (as_stored) {
+      const std::size_t size = e.values.size() * sizeof(float);
+      if (size > bytes_.size() - at_) bad("the file ends before its last row; it is truncated");
+      if (size > 0) std::memcpy(e.values.data(), bytes_.data() + at_, size);
+      at_ += size;
+      return;
     }
-    if (has_list) e.lists.reserve(e.count);
+    if (e.columns < e.properties.size()) e.lists.reserve(e.count);
+    float* out = e.values.data();
     for (std::size_t row = 0; row < e.count; ++row) {
       bool first_list = true;
-      for (std::size_t c = 0; c < e.properties.size(); ++c) {
-        const PlyProperty& p = e.properties[c];
-        if (p.list_type.empty()) {
-          e.columns[c].push_back(value(p.type));
-          continue;
+      for (const PlyProperty& p : e.properties) {
+        if (!p.count_type) {
+          *out++ = static_cast<float>(value(p.type));
+        } else {
+          std::vector<std::uint32_t> list = listOf(e, row, p);
+          if (first_list) e.lists.push_back(std::move(list));
+          first_list = false;
         }
-        const double n = value(p.list_type);
-        if (!(n >= 0 && n <= 1024))
-          bad(fmt::format("row {} of \"{}\" has a list of {} entries", row, e.name, n));
-        std::vector<std::uint32_t> list;
-        for (int i = 0; i < static_cast<int>(n); ++i)
-          list.push_back(static_cast<std::uint32_t>(value(p.type)));
-        if (first_list) e.lists.push_back(std::move(list));
-        first_list = false;
       }
     }
   }
 
-  double value(const std::string& type) {
-    return format_ == Format::Ascii ? asciiValue() : binaryValue(type);
+  std::vector<std::uint32_t> listOf(const PlyElement& e, std::size_t row, const PlyProperty& p) {
+    const double n = value(*p.count_type);
+    if (!(n >= 0 && n <= 1024)) bad(fmt::format("row {} of \"{}\" has a list of {} entries", row, e.name, n));
+    std::vector<std::uint32_t> list;
+    for (int i = 0; i < static_cast<int>(n); ++i) {
+      const double v = value(p.type);
+      if (!(v >= 0 && v <= 4294967295.0)) {
+        bad(fmt::format("row {} of \"{}\" lists {}, expected an index", row, e.name, v));
+      }
+      list.push_back(static_cast<std::uint32_t>(v));
+    }
+    return list;
   }
+
+  double value(PlyType type) { return format_ == Format::Ascii ? asciiValue() : binaryValue(type); }
 
   double asciiValue() {
     while (at_ < bytes_.size() && std::isspace(static_cast<unsigned char>(bytes_[at_]))) ++at_;
+    if (at_ < bytes_.size() && bytes_[at_] == '+') ++at_;  // from_chars knows no plus
     double v = 0;
     const char* end = bytes_.data() + bytes_.size();
     const auto result = std::from_chars(bytes_.data() + at_, end, v);
@@ -172,15 +207,26 @@ class PlyReader {
     return std::bit_cast<T>(b);
   }
 
-  double binaryValue(const std::string& t) {
-    if (t == "float") return raw<float>();
-    if (t == "double") return raw<double>();
-    if (t == "char") return raw<std::int8_t>();
-    if (t == "uchar") return raw<std::uint8_t>();
-    if (t == "short") return raw<std::int16_t>();
-    if (t == "ushort") return raw<std::uint16_t>();
-    if (t == "int") return raw<std::int32_t>();
-    return raw<std::uint32_t>();
+  double binaryValue(PlyType t) {
+    switch (t) {
+      case PlyType::Char:
+        return raw<std::int8_t>();
+      case PlyType::UChar:
+        return raw<std::uint8_t>();
+      case PlyType::Short:
+        return raw<std::int16_t>();
+      case PlyType::UShort:
+        return raw<std::uint16_t>();
+      case PlyType::Int:
+        return raw<std::int32_t>();
+      case PlyType::UInt:
+        return raw<std::uint32_t>();
+      case PlyType::Float:
+        return raw<float>();
+      case PlyType::Double:
+        return raw<double>();
+    }
+    return 0;
   }
 
   std::filesystem::path path_;
@@ -192,11 +238,14 @@ class PlyReader {
 
 }  // namespace
 
-const std::vector<double>* PlyElement::column(const std::string& property) const {
-  for (std::size_t c = 0; c < properties.size(); ++c) {
-    if (properties[c].name == property && properties[c].list_type.empty()) return &columns[c];
+std::optional<std::size_t> PlyElement::column(const std::string& property) const {
+  std::size_t position = 0;
+  for (const PlyProperty& p : properties) {
+    if (p.count_type) continue;
+    if (p.name == property) return position;
+    ++position;
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 std::vector<PlyElement> readPly(const std::filesystem::path& path) { return PlyReader(path).read(); }

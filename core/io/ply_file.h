@@ -3,28 +3,33 @@
 // are read through it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace beam {
 
+enum class PlyType { Char, UChar, Short, UShort, Int, UInt, Float, Double };
+
 struct PlyProperty {
   std::string name;
-  std::string type;       // "float", "uchar", ... as canonical names
-  std::string list_type;  // type of the count; empty: no list
+  PlyType type = PlyType::Float;
+  std::optional<PlyType> count_type = {};  // of a list
 };
 
 struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<PlyProperty> properties;
-  std::vector<std::vector<double>> columns;       // of plain properties, by position
+  std::size_t columns = 0;                        // plain properties
+  std::vector<float> values;                      // [row][column]: the plain properties in their order
   std::vector<std::vector<std::uint32_t>> lists;  // of the first list property, one a row
 
-  // Column of a property; null when there is none.
-  const std::vector<double>* column(const std::string& property) const;
+  // Position of a plain property in its row; nothing when there is none.
+  std::optional<std::size_t> column(const std::string& property) const;
+  const float* row(std::size_t i) const { return values.data() + i * columns; }
 };
 
 // Throws Error{Data} naming the file: no PLY, unknown type, or fewer bytes than the counts need.

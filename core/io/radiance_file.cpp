@@ -14,6 +14,9 @@ namespace beam {
 namespace {
 
 constexpr int kMaxSide = 16384;
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
+
+using Rgbe = std::array<std::uint8_t, 4>;
 
 class HdrReader {
  public:
@@ -22,17 +25,22 @@ class HdrReader {
 
   Image<vec3> read() {
     header();
-    // A new-style scanline takes at least 4 + 4 * width / 127 * 2 bytes; a flat file 4 a pixel, an old run
-    // about 1/255.
     const std::size_t left = bytes_.size() - at_;
     if (static_cast<std::size_t>(rows_) * 4 > left)
-      bad(fmt::format("{} rows cannot lie in {} bytes", rows_, left));
-    Image<vec3> out(columns_first_ ? rows_ : columns_, columns_first_ ? columns_ : rows_, vec3(0),
-                    Encoding::Linear);
-    std::vector<std::array<std::uint8_t, 4>> line(columns_);
+      bad(fmt::format("{} rows cannot lie in {} bytes; the file is truncated", rows_, left));
+    // Runs may shrink a scanline to a few bytes, so no size is promised by the length of the file: memory
+    // grows with the scanlines that are really there.
+    std::vector<Rgbe> pixels, line(columns_);
     for (int row = 0; row < rows_; ++row) {
       scanline(line);
-      for (int column = 0; column < columns_; ++column) place(out, row, column, line[column]);
+      pixels.insert(pixels.end(), line.begin(), line.end());
+    }
+    Image<vec3> out(columns_first_ ? rows_ : columns_, columns_first_ ? columns_ : rows_, vec3(0),
+                    Encoding::Linear);
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        place(out, row, column, pixels[static_cast<std::size_t>(row) * columns_ + column]);
+      }
     }
     return out;
   }
@@ -84,6 +92,9 @@ class HdrReader {
     if (n1 < 1 || n2 < 1 || n1 > kMaxSide || n2 > kMaxSide) {
       bad(fmt::format("expected 1 to {} pixels a side, found {} and {}", kMaxSide, n1, n2));
     }
+    if (std::int64_t{n1} * n2 > kMaxPixels) {
+      bad(fmt::format("expected at most {} pixels, the header says {} x {}", kMaxPixels, n1, n2));
+    }
     rows_ = static_cast<int>(n1);
     columns_ = static_cast<int>(n2);
     columns_first_ = axis(first) == 'X';
@@ -97,8 +108,8 @@ class HdrReader {
     return static_cast<std::uint8_t>(bytes_[at_++]);
   }
 
-  void scanline(std::vector<std::array<std::uint8_t, 4>>& line) {
-    std::array<std::uint8_t, 4> p = {byte(), byte(), byte(), byte()};
+  void scanline(std::vector<Rgbe>& line) {
+    Rgbe p = {byte(), byte(), byte(), byte()};
     const bool new_runs = columns_ >= 8 && columns_ < 32768 && p[0] == 2 && p[1] == 2 && p[2] < 128;
     if (!new_runs) return oldScanline(line, p);
     if ((p[2] << 8 | p[3]) != columns_) bad("a scanline has another length than the header says");
@@ -114,7 +125,7 @@ class HdrReader {
     }
   }
 
-  void oldScanline(std::vector<std::array<std::uint8_t, 4>>& line, std::array<std::uint8_t, 4> p) {
+  void oldScanline(std::vector<Rgbe>& line, Rgbe p) {
     int shift = 0;
     for (int x = 0; x < columns_;) {
       if (p[0] == 1 && p[1] == 1 && p[2] == 1 && x > 0) {
@@ -130,7 +141,7 @@ class HdrReader {
     }
   }
 
-  void place(Image<vec3>& out, int row, int column, const std::array<std::uint8_t, 4>& p) const {
+  void place(Image<vec3>& out, int row, int column, const Rgbe& p) const {
     const int r = flip_rows_ ? rows_ - 1 - row : row, c = flip_columns_ ? columns_ - 1 - column : column;
     const float unit = p[3] == 0 ? 0.0f : static_cast<float>(std::ldexp(1.0 / exposure_, p[3] - 136));
     const vec3 value = unit * vec3(p[0], p[1], p[2]);

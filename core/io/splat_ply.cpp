@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -50,19 +51,28 @@ vec3 outwardNormal(const GaussianCloud& cloud, std::size_t i, vec3 center) {
   return glm::dot(n, cloud.position_m[i] - center) < 0 ? -n : n;
 }
 
+// Rows of a splat table by the names of their columns.
 class Columns {
  public:
   Columns(const PlyElement& e, const std::filesystem::path& path) : element_(e), path_(path) {}
-  bool has(const std::string& name) const { return element_.column(name) != nullptr; }
-  const std::vector<double>& operator[](const std::string& name) const {
-    if (const auto* c = element_.column(name)) return *c;
-    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected a splat PLY, its column \"{}\" is missing",
-                                               path_.string(), name));
+  bool has(const std::string& name) const { return element_.column(name).has_value(); }
+  std::size_t operator[](const std::string& name) const {
+    if (const auto c = element_.column(name)) return *c;
+    bad(fmt::format("expected a splat PLY, its column \"{}\" is missing", name));
+  }
+  template <int N>
+  std::array<std::size_t, N> numbered(const std::string& stem) const {
+    std::array<std::size_t, N> c;
+    for (int k = 0; k < N; ++k) c[k] = (*this)[fmt::format("{}{}", stem, k)];
+    return c;
   }
   int count(const std::string& stem) const {
     int n = 0;
     while (has(fmt::format("{}{}", stem, n))) ++n;
     return n;
+  }
+  [[noreturn]] void bad(const std::string& what) const {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": {}", path_.string(), what));
   }
 
  private:
@@ -70,31 +80,35 @@ class Columns {
   const std::filesystem::path& path_;
 };
 
-// Fills a block from "<stem>dc_" and "<stem>rest_" columns; returns the stored degree.
-int readSh(const Columns& columns, const std::string& stem, const std::string& rest, ShBlock& block,
-           std::size_t n, const std::filesystem::path& path) {
-  const int stored = columns.count(rest), per_channel = stored / block.channels;
-  int degree = -1;
-  for (int d = 0; d <= 3; ++d) {
-    if (shCount(d) - 1 == per_channel && stored % block.channels == 0) degree = d;
-  }
-  if (degree < 0) {
-    throw Error(Error::Kind::Data,
-                fmt::format("\"{}\": expected 0, 3, 8 or 15 columns \"{}N\" a channel, found {}",
-                            path.string(), rest, stored));
-  }
-  block = ShBlock(n, block.channels);
-  for (int c = 0; c < block.channels; ++c) {
-    const auto& dc = columns[fmt::format("{}{}", stem, c)];
-    for (std::size_t i = 0; i < n; ++i) block.of(i)[c] = static_cast<float>(dc[i]);
-    for (int k = 0; k < per_channel; ++k) {
-      const auto& v = columns[fmt::format("{}{}", rest, c * per_channel + k)];
-      for (std::size_t i = 0; i < n; ++i)
-        block.of(i)[(k + 1) * block.channels + c] = static_cast<float>(v[i]);
+// Where the coefficients of a block stand in a row: from[k * channels + channel]; those of bands that are
+// not stored are kNone.
+struct ShColumns {
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  int degree = -1, channels = 3;
+  std::array<std::size_t, 3 * kShCount> from;
+
+  ShColumns(const Columns& columns, const std::string& stem, int channel_count) : channels(channel_count) {
+    const std::string rest = stem + "rest_";
+    const int stored = columns.count(rest), per_channel = stored / channels;
+    for (int d = 0; d <= 3; ++d) {
+      if (shCount(d) - 1 == per_channel && stored % channels == 0) degree = d;
+    }
+    if (degree < 0) {
+      columns.bad(
+          fmt::format("expected 0, 3, 8 or 15 columns \"{}N\" a channel, found {} in all", rest, stored));
+    }
+    from.fill(kNone);
+    for (int c = 0; c < channels; ++c) {
+      from[c] = columns[fmt::format("{}dc_{}", stem, c)];
+      for (int k = 0; k < per_channel; ++k) {
+        from[(k + 1) * channels + c] = columns[fmt::format("{}{}", rest, c * per_channel + k)];
+      }
     }
   }
-  return degree;
-}
+  void copy(const float* row, float* out) const {
+    for (int k = 0; k < kShCount * channels; ++k) out[k] = from[k] == kNone ? 0 : row[from[k]];
+  }
+};
 
 // Band by band, the matrix that turns coefficients so that value'(R d) = value(d): solved from sample
 // directions, exact to rounding since a band is closed under rotation.
@@ -158,8 +172,29 @@ ShBlock rotatedSh(const ShBlock& in, const dmat3& rotation) {
 }
 
 void requireRotation(const dmat3& r) {
-  if (std::abs(glm::determinant(r) - 1) < 1e-6) return;
+  const dmat3 square = glm::transpose(r) * r;
+  double off = std::abs(glm::determinant(r) - 1);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) off = std::max(off, std::abs(square[i][j] - (i == j)));
+  }
+  if (off < 1e-6) return;
   throw Error(Error::Kind::Bug, "Gaussians can be turned by a rotation only; a mirror has no quaternion");
+}
+
+Materials materialsOf(const PlyElement& vertex, const Columns& columns) {
+  const std::size_t n = vertex.count, roughness = columns["roughness"];
+  const ShColumns base_color(columns, "base_color_", 3), occlusion(columns, "ao_", 1);
+  Materials m;
+  m.roughness.resize(n);
+  m.base_color = ShBlock(n, 3);
+  m.ambient_occlusion = ShBlock(n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float* row = vertex.row(i);
+    m.roughness[i] = std::clamp(row[roughness], 0.04f, 1.0f);
+    base_color.copy(row, m.base_color.of(i));
+    occlusion.copy(row, m.ambient_occlusion.of(i));
+  }
+  return m;
 }
 
 }  // namespace
@@ -207,39 +242,37 @@ SplatFile readSplatPly(const std::filesystem::path& path) {
   const PlyElement* vertex = findElement(elements, "vertex");
   if (!vertex)
     throw Error(Error::Kind::Data, fmt::format("\"{}\": expected an element \"vertex\"", path.string()));
-  const Columns columns(*vertex, path);
   const std::size_t n = vertex->count;
+  const Columns columns(*vertex, path);
+  const std::array<std::size_t, 3> position = {columns["x"], columns["y"], columns["z"]};
+  const auto scale = columns.numbered<3>("scale_");
+  const auto rotation = columns.numbered<4>("rot_");
+  const std::size_t opacity = columns["opacity"];
+  const ShColumns color(columns, "f_", 3);
   SplatFile file;
+  file.sh_degree = color.degree;
   GaussianCloud& c = file.cloud;
   c.position_m.resize(n), c.rotation.resize(n), c.scale_m.resize(n), c.opacity.resize(n);
-  const auto fill = [&](const std::string& name, auto&& set) {
-    const std::vector<double>& v = columns[name];
-    for (std::size_t i = 0; i < n; ++i) set(i, static_cast<float>(v[i]));
-  };
-  for (int k = 0; k < 3; ++k) {
-    fill(std::string(1, "xyz"[k]), [&](std::size_t i, float v) { c.position_m[i][k] = v; });
-    fill(fmt::format("scale_{}", k), [&](std::size_t i, float v) { c.scale_m[i][k] = std::exp(v); });
-  }
-  fill("opacity",
-       [&](std::size_t i, float v) { c.opacity[i] = std::clamp(1 / (1 + std::exp(-v)), 1e-7f, 1 - 1e-7f); });
-  fill("rot_0", [&](std::size_t i, float v) { c.rotation[i].w = v; });
-  fill("rot_1", [&](std::size_t i, float v) { c.rotation[i].x = v; });
-  fill("rot_2", [&](std::size_t i, float v) { c.rotation[i].y = v; });
-  fill("rot_3", [&](std::size_t i, float v) { c.rotation[i].z = v; });
-  for (quat& q : c.rotation) {
+  c.color = ShBlock(n, 3);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float* row = vertex->row(i);
+    for (int k = 0; k < 3; ++k) c.position_m[i][k] = row[position[k]];
+    for (int k = 0; k < 3; ++k) c.scale_m[i][k] = std::exp(row[scale[k]]);
+    c.opacity[i] = std::clamp(1 / (1 + std::exp(-row[opacity])), 1e-7f, 1 - 1e-7f);
+    const quat q(row[rotation[0]], row[rotation[1]], row[rotation[2]], row[rotation[3]]);
     const float norm = std::sqrt(glm::dot(q, q));
-    q = norm > 0 && std::isfinite(norm) ? q / norm : quat(1, 0, 0, 0);
+    c.rotation[i] = norm > 0 && std::isfinite(norm) ? q / norm : quat(1, 0, 0, 0);
+    color.copy(row, c.color.of(i));
   }
-  file.sh_degree = readSh(columns, "f_dc_", "f_rest_", c.color, n, path);
   if (columns.has("roughness") && columns.has("base_color_dc_0") && columns.has("ao_dc_0")) {
-    Materials m;
-    m.roughness.resize(n);
-    fill("roughness", [&](std::size_t i, float v) { m.roughness[i] = std::clamp(v, 0.04f, 1.0f); });
-    readSh(columns, "base_color_dc_", "base_color_rest_", m.base_color, n, path);
-    readSh(columns, "ao_dc_", "ao_rest_", m.ambient_occlusion, n, path);
-    file.materials = std::move(m);
+    file.materials = materialsOf(*vertex, columns);
   }
-  validate(file.cloud);
+  try {
+    validate(c);
+    if (file.materials) validate(*file.materials, c);
+  } catch (const Error& e) {
+    columns.bad(e.what());
+  }
   return file;
 }
 

@@ -6,55 +6,22 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <fstream>
 
 #include "core/base/error.h"
-#include "core/io/file.h"
 #include "core/io/image_file.h"
+#include "tests/core/io/tiny_capture.h"
 #include "tests/support/temp_dir.h"
 
 namespace beam {
 namespace {
 
+using testing::errorOf;
 using ::testing::HasSubstr;
+using testing::kDataset;
+using testing::put;
+using testing::putPictures;
 using testing::TempDir;
 namespace fs = std::filesystem;
-
-constexpr const char* kDataset = R"({"name": "t", "fps": 25, "world": {"up": "+Z"}, "cameras": {
-  "a": {"split": "train", "width": 20, "height": 12, "fx": 30, "fy": 31, "cx": 9.5, "cy": 6,
-        "R": [[1,0,0],[0,0,-1],[0,1,0]], "t": [0.1, 0.9, 3]},
-  "b": {"split": "train", "width": 20, "height": 12, "fx": 30, "fy": 31, "cx": 9.5, "cy": 6,
-        "R": [[0,1,0],[0,0,-1],[-1,0,0]], "t": [0, 0.9, 3]},
-  "c": {"split": "test", "width": 20, "height": 12, "fx": 30, "fy": 31, "cx": 9.5, "cy": 6,
-        "R": [[1,0,0],[0,0,-1],[0,1,0]], "t": [0, 0.9, 4]}}})";
-
-void put(const fs::path& path, const std::string& bytes) {
-  fs::create_directories(path.parent_path());
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-void putPictures(const fs::path& folder, int width = 20) {
-  for (const char* camera : {"a", "b"}) {
-    fs::create_directories(folder / "images" / camera);
-    fs::create_directories(folder / "masks" / camera);
-    for (const char* frame : {"000003", "000004"}) {
-      writePng(folder / "images" / camera / (std::string(frame) + ".png"),
-               Image<u8vec3>(width, 12, u8vec3(10, 20, 30)));
-      writePng(folder / "masks" / camera / (std::string(frame) + ".png"), Image<std::uint8_t>(20, 12, 255));
-    }
-  }
-}
-
-std::string errorOf(const fs::path& folder, Error::Kind kind = Error::Kind::Data) {
-  try {
-    openCapture(folder);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), kind);
-    return e.what();
-  }
-  ADD_FAILURE() << "expected an error";
-  return "";
-}
 
 TEST(CaptureReader, ReadsADatasetIntoTheHousesWorld) {
   const TempDir dir;

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/io/capture_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace beam {
+namespace {
+
+constexpr double kStill_m = 1e-3;      // COLMAP and transforms.json carry no unit: metres by convention
+constexpr double kStill_rad = 2e-3;    // about a pixel at the border of a 1000-pixel picture
+constexpr double kOrthonormal = 1e-3;  // what rounding to four digits leaves
+
+[[noreturn]] void bad(const std::string& where, const std::string& what) {
+  throw Error(Error::Kind::Data, fmt::format("{}: {}", where, what));
+}
+
+}  // namespace
+
+bool isPicture(const std::filesystem::path& file) {
+  std::string e = file.extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return std::tolower(c); });
+  return e == ".png" || e == ".jpg" || e == ".jpeg";
+}
+
+std::map<std::string, std::filesystem::path> picturesIn(const std::filesystem::path& folder) {
+  std::map<std::string, std::filesystem::path> found;
+  if (!std::filesystem::is_directory(folder)) return found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path& file = entry.path();
+    const bool hidden = file.filename().string().front() == '.';  // macOS leaves "._name.png" beside pictures
+    if (hidden || !isPicture(file) || !entry.is_regular_file()) continue;
+    // Of two pictures with one stem the first by name counts: a folder lists them in no order.
+    const auto [place, fresh] = found.emplace(file.stem().string(), file);
+    if (!fresh) place->second = std::min(place->second, file);
+  }
+  return found;
+}
+
+dquat rotationFromMatrix(const dmat3& m, const std::string& where) {
+  const dmat3 square = glm::transpose(m) * m;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (!(std::abs(square[i][j] - (i == j)) < kOrthonormal))
+        bad(where, "expected an orthonormal rotation matrix");
+    }
+  }
+  if (glm::determinant(m) < 0) bad(where, "the rotation matrix is a mirror (determinant -1)");
+  return glm::normalize(glm::quat_cast(m));
+}
+
+void requireStill(const DescribedCamera& known, const Camera& again, const std::string& where) {
+  const double moved_m = glm::length(centerOf(known.camera) - centerOf(again));
+  const dquat &p = known.camera.camera_from_world.rotation, &q = again.camera_from_world.rotation;
+  const double turned_rad = 2 * std::acos(std::min(1.0, std::abs(glm::dot(p, q))));
+  if (moved_m > kStill_m || turned_rad > kStill_rad) {
+    bad(where,
+        fmt::format("camera \"{}\" moves between its pictures by {:.4f} m and {:.4f} rad; expected cameras "
+                    "that stand still",
+                    known.name, moved_m, turned_rad));
+  }
+  if (known.camera.width != again.width || known.camera.height != again.height ||
+      std::abs(known.camera.intrinsics.fx - again.intrinsics.fx) > 1e-3 * again.intrinsics.fx) {
+    bad(where,
+        fmt::format("camera \"{}\" changes its size or focal length between its pictures; expected one "
+                    "calibration a camera",
+                    known.name));
+  }
+}
+
+void requirePlainName(const std::string& name, const std::string& where) {
+  const std::filesystem::path path(name);
+  const bool leaves = std::any_of(path.begin(), path.end(), [](const auto& part) { return part == ".."; });
+  if (name.empty() || name.size() > 255 || path.is_absolute() || leaves) {
+    bad(where,
+        fmt::format("\"{}\" is no name for a camera or picture; expected a relative path without \"..\"",
+                    name));
+  }
+}
+
+}  // namespace beam

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures and masks of an opened capture as files: where masks are looked for, what kind of mask a
+// capture has, and the FrameSource that reads them when asked.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene/capture.h"
+
+namespace beam {
+
+enum class MaskKind { None, Files, Alpha, Key };
+
+struct PictureFiles {
+  std::filesystem::path picture, mask;  // empty: there is none
+};
+
+// Pictures of every view, one entry a frame.
+using PictureTable = std::vector<std::vector<PictureFiles>>;
+
+// Where the mask of a picture lies (ecosystem 1.7, 1 to 4); empty: nowhere.
+std::filesystem::path findMask(const std::filesystem::path& root, const std::filesystem::path& picture,
+                               const std::string& camera);
+
+// Files where any picture has one; else alpha or a black or white key, as the first readable picture has it.
+MaskKind maskKindOf(const PictureTable& files);
+
+// Throws Error{Data} that names the file and both sizes unless `file` has the size of its calibration.
+void requireCalibratedSize(const View& view, const std::filesystem::path& file, ivec2 found,
+                           const char* what);
+
+std::shared_ptr<const FrameSource> makeFileFrames(PictureTable files, std::vector<View> views, MaskKind kind);
+
+}  // namespace beam
