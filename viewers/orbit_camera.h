@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A camera that circles a point, +Y up: the free camera of the views. Angles in radians, drags in pixels.
+#pragma once
+
+#include "core/scene/camera.h"
+
+namespace beam {
+
+struct Bounds {
+  vec3 center_m = vec3(0);
+  float radius_m = 1;
+};
+
+struct OrbitCamera {
+  vec3 target_m = vec3(0, 1, 0);
+  float azimuth_rad = 0;       // 0: the eye is at +Z of the target; grows towards +X
+  float elevation_rad = 0.1f;  // towards +Y, kept inside +-89 degrees
+  float distance_m = 3;
+  float field_of_view_rad = 0.7f;  // vertical
+
+  // The hand drags the scene: to the right turns its front to the right, down shows its top.
+  void orbit(vec2 drag_px);
+  // What lies at the target's depth stays under the hand.
+  void pan(vec2 drag_px, int height_px);
+  // Steps of a wheel; positive comes closer.
+  void zoom(float steps);
+  // Moves back until the bounds fill the picture; keeps the direction.
+  void frame(const Bounds& bounds);
+
+  Camera camera(int width_px, int height_px) const;
+};
+
+// The orbit that sees what `camera` sees, around a point `distance_m` in front of it; roll is dropped.
+OrbitCamera orbitOf(const Camera& camera, float distance_m);
+
+// `camera` as seen in a window of another shape: its whole picture is inside, centred, the rest of the window
+// looks past its border.
+Camera fittedTo(const Camera& camera, int width_px, int height_px);
+
+}  // namespace beam

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewers/scene/vtk_convert.h"
+
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+
+namespace beam {
+namespace {
+
+// Collects points, colours and cells, then hands them over as one vtkPolyData.
+class Builder {
+ public:
+  vtkIdType point(vec3 p, u8vec3 color) {
+    colors_->InsertNextTypedTuple(&color.x);
+    return points_->InsertNextPoint(p.x, p.y, p.z);
+  }
+  void normal(vec3 n) { normals_->InsertNextTypedTuple(&n.x); }
+  void line(vtkIdType a, vtkIdType b) {
+    const vtkIdType ids[2] = {a, b};
+    lines_->InsertNextCell(2, ids);
+  }
+  void line(vec3 a, vec3 b, u8vec3 color) {
+    const vtkIdType first = point(a, color);
+    line(first, point(b, color));
+  }
+  void vertex(vtkIdType a) { vertices_->InsertNextCell(1, &a); }
+  void triangle(vtkIdType a, vtkIdType b, vtkIdType c) {
+    const vtkIdType ids[3] = {a, b, c};
+    triangles_->InsertNextCell(3, ids);
+  }
+  PolyData build() {
+    auto data = PolyData::New();
+    data->SetPoints(points_);
+    data->GetPointData()->SetScalars(colors_);
+    if (normals_->GetNumberOfTuples() > 0) data->GetPointData()->SetNormals(normals_);
+    data->SetLines(lines_);
+    data->SetVerts(vertices_);
+    data->SetPolys(triangles_);
+    return data;
+  }
+  Builder() {
+    colors_->SetNumberOfComponents(3);
+    normals_->SetNumberOfComponents(3);
+  }
+
+ private:
+  vtkSmartPointer<vtkPoints> points_ = vtkSmartPointer<vtkPoints>::New();
+  vtkSmartPointer<vtkUnsignedCharArray> colors_ = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  vtkSmartPointer<vtkFloatArray> normals_ = vtkSmartPointer<vtkFloatArray>::New();
+  vtkSmartPointer<vtkCellArray> lines_ = vtkSmartPointer<vtkCellArray>::New();
+  vtkSmartPointer<vtkCellArray> vertices_ = vtkSmartPointer<vtkCellArray>::New();
+  vtkSmartPointer<vtkCellArray> triangles_ = vtkSmartPointer<vtkCellArray>::New();
+};
+
+// The unit sphere: an octahedron whose faces are split twice (66 points, 128 triangles).
+Mesh unitSphere() {
+  Mesh sphere;
+  sphere.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  sphere.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  for (int level = 0; level < 2; ++level) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [it, fresh] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(sphere.vertices.size()));
+      if (fresh) sphere.vertices.push_back(glm::normalize(sphere.vertices[a] + sphere.vertices[b]));
+      return it->second;
+    };
+    std::vector<std::array<std::uint32_t, 3>> finer;
+    for (const auto& [a, b, c] : sphere.triangles) {
+      const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    }
+    sphere.triangles = std::move(finer);
+  }
+  return sphere;
+}
+
+std::vector<std::size_t> largest(const GaussianCloud& cloud, std::size_t most) {
+  const auto weight = [&](std::size_t i) {
+    const vec3 s = cloud.scale_m[i];
+    return cloud.opacity[i] * (s.x * s.y * s.z) / std::min({s.x, s.y, s.z});
+  };
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.size() <= most) return order;
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(),
+                   [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
+  order.resize(most);
+  return order;
+}
+
+u8vec3 meanColor(const GaussianCloud& cloud, std::size_t i) {
+  const float* sh = cloud.color.of(i);
+  const vec3 c = 0.5f + kShC0 * vec3(sh[0], sh[1], sh[2]);
+  return u8vec3(glm::clamp(c, vec3(0), vec3(1)) * 255.0f + 0.5f);
+}
+
+}  // namespace
+
+PolyData frustaOf(const std::vector<View>& views, double length_m) {
+  Builder builder;
+  for (const View& view : views) {
+    const u8vec3 color = view.split == Split::Test ? kTestColor : kTrainColor;
+    const Rigid3 world_from_camera = inverse(view.camera.camera_from_world);
+    const double w = view.camera.width, h = view.camera.height;
+    const auto corner = [&](double x, double y) {
+      return builder.point(vec3(world_from_camera * (length_m * rayOf(view.camera.intrinsics, {x, y}))),
+                           color);
+    };
+    const vtkIdType eye = builder.point(vec3(world_from_camera.translation_m), color);
+    const std::array<vtkIdType, 4> corners{corner(0, 0), corner(w, 0), corner(w, h), corner(0, h)};
+    for (int i = 0; i < 4; ++i) {
+      builder.line(eye, corners[i]);
+      builder.line(corners[i], corners[(i + 1) % 4]);
+    }
+    const vtkIdType tip = corner(w / 2, -h / 6);
+    builder.line(corners[0], tip);
+    builder.line(tip, corners[1]);
+  }
+  return builder.build();
+}
+
+PolyData pointsOf(const PointCloud& cloud) {
+  Builder builder;
+  for (std::size_t i = 0; i < cloud.position_m.size(); ++i) {
+    builder.vertex(builder.point(cloud.position_m[i], cloud.color.empty() ? u8vec3(200) : cloud.color[i]));
+  }
+  return builder.build();
+}
+
+PolyData meshOf(const Mesh& mesh) {
+  std::vector<vec3> normals(mesh.vertices.size(), vec3(0));
+  for (const auto& [a, b, c] : mesh.triangles) {
+    // Not normalised: larger triangles say more.
+    const vec3 n = glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+    for (const std::uint32_t v : {a, b, c}) normals[v] += n;
+  }
+  Builder builder;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    builder.point(mesh.vertices[i], u8vec3(186, 190, 198));
+    builder.normal(normals[i] / std::max(glm::length(normals[i]), 1e-20f));
+  }
+  for (const auto& [a, b, c] : mesh.triangles) builder.triangle(a, b, c);
+  return builder.build();
+}
+
+PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas) {
+  const Mesh sphere = unitSphere();
+  Builder builder;
+  for (const std::size_t i : largest(cloud, most)) {
+    const u8vec3 color = meanColor(cloud, i);
+    const vec3 radii = sigmas * cloud.scale_m[i];
+    vtkIdType first = -1;
+    for (const vec3& v : sphere.vertices) {
+      const vtkIdType id = builder.point(cloud.position_m[i] + cloud.rotation[i] * (radii * v), color);
+      if (first < 0) first = id;
+      builder.normal(glm::normalize(cloud.rotation[i] * (v / radii)));
+    }
+    for (const auto& [a, b, c] : sphere.triangles) builder.triangle(first + a, first + b, first + c);
+  }
+  return builder.build();
+}
+
+PolyData gridAndAxes(float extent_m, float cell_m) {
+  Builder builder;
+  const int cells = static_cast<int>(extent_m / cell_m + 0.5f);
+  for (int i = -cells; i <= cells; ++i) {
+    const float at = cell_m * static_cast<float>(i);
+    builder.line(vec3(at, 0, -extent_m), vec3(at, 0, extent_m), u8vec3(62, 66, 72));
+    builder.line(vec3(-extent_m, 0, at), vec3(extent_m, 0, at), u8vec3(62, 66, 72));
+  }
+  const float axis = 0.5f * extent_m;
+  builder.line(vec3(0), vec3(axis, 0, 0), u8vec3(230, 92, 84));
+  builder.line(vec3(0), vec3(0, axis, 0), u8vec3(112, 200, 96));
+  builder.line(vec3(0), vec3(0, 0, axis), u8vec3(96, 140, 245));
+  return builder.build();
+}
+
+}  // namespace beam

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values of the scene as VTK geometry with one 8-bit colour a point. World axes and metres stay as they are.
+#pragma once
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include "core/scene/capture.h"
+#include "core/scene/gaussian_cloud.h"
+#include "core/scene/mesh.h"
+
+namespace beam {
+
+using PolyData = vtkSmartPointer<vtkPolyData>;
+
+inline constexpr u8vec3 kTrainColor(92, 158, 255), kTestColor(255, 168, 76);
+
+// Pyramids of four corner rays with a tick at the picture's top, `length_m` deep.
+PolyData frustaOf(const std::vector<View>& views, double length_m);
+PolyData pointsOf(const PointCloud& cloud);
+PolyData meshOf(const Mesh& mesh);
+
+// The largest `most` Gaussians (by opacity and cross-section) as ellipsoids of `sigmas` standard deviations.
+PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas);
+
+// A floor of `cell_m` cells at y = 0 and the three axes, x red, y green, z blue.
+PolyData gridAndAxes(float extent_m, float cell_m);
+
+}  // namespace beam

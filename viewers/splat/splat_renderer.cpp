@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewers/splat/splat_renderer.h"
+
+#include <chrono>
+
+#include "core/base/parallel.h"
+#include "viewers/splat/channel_picture.h"
+
+namespace beam {
+namespace {
+
+bool same(const Camera& a, const Camera& b) {
+  const Intrinsics &i = a.intrinsics, &j = b.intrinsics;
+  return a.width == b.width && a.height == b.height && i.fx == j.fx && i.fy == j.fy && i.cx == j.cx &&
+         i.cy == j.cy && a.camera_from_world.rotation == b.camera_from_world.rotation &&
+         a.camera_from_world.translation_m == b.camera_from_world.translation_m;
+}
+
+Image<vec3> skyOf(const Camera& camera, const PreparedLight& light, float yaw_rad) {
+  Image<vec3> sky(camera.width, camera.height, vec3(0), Encoding::Linear);
+  const dquat world_from_camera = glm::conjugate(camera.camera_from_world.rotation);
+  parallelFor(camera.height, 16, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < camera.width; ++x) {
+        const dvec3 ray = glm::normalize(rayOf(camera.intrinsics, {x + 0.5, y + 0.5}));
+        sky(x, y) = light.background(vec3(world_from_camera * ray), yaw_rad);
+      }
+    }
+  });
+  return sky;
+}
+
+// What to show instead of a channel that cannot be, and why.
+Channel shownChannel(const SplatRequest& request, std::string& note) {
+  const bool materials = request.scene.materials != nullptr;
+  const char* title = infoOf(request.channel).title;
+  switch (request.channel) {
+    case Channel::Lit:
+      if (materials && request.light) return Channel::Lit;
+      note = materials ? "No light chosen: showing radiance. Choose or open a panorama under Display."
+                       : "No materials yet: showing radiance. Run until Materials to relight.";
+      return Channel::Radiance;
+    case Channel::BaseColor:
+    case Channel::AmbientOcclusion:
+    case Channel::Roughness:
+      if (!materials) note = std::string(title) + " is not there yet. Run until Materials to see it.";
+      return request.channel;
+    default:
+      return request.channel;
+  }
+}
+
+}  // namespace
+
+SplatRenderer::SplatRenderer(std::shared_ptr<ComputeDevice> device)
+    : device_(std::move(device)), moving_(*device_), still_(*device_) {}
+
+const GBuffer& SplatRenderer::gbufferFor(const SplatRequest& r) {
+  const bool kept = gbuffer_ && scene_.cloud == r.scene.cloud && scene_.materials == r.scene.materials &&
+                    same(camera_, r.camera);
+  if (!kept) {
+    GBufferRenderer& renderer = r.camera.width * r.camera.height < 300'000 ? moving_ : still_;
+    gbuffer_ = std::make_shared<GBuffer>(renderer.render(*r.scene.cloud, r.scene.materials.get(), r.camera));
+    lit_ = nullptr;
+    scene_ = r.scene;
+    camera_ = r.camera;
+  }
+  return *gbuffer_;
+}
+
+const Image<vec3>& SplatRenderer::litFor(const SplatRequest& r) {
+  if (!lit_ || lit_by_ != r.light || lit_yaw_rad_ != r.yaw_rad) {
+    lit_by_ = r.light;
+    lit_yaw_rad_ = r.yaw_rad;
+    lit_ = std::make_shared<Image<vec3>>(shade(*gbuffer_, r.camera, *r.light, {.yaw_rad = r.yaw_rad}));
+  }
+  return *lit_;
+}
+
+SplatPicture SplatRenderer::render(const SplatRequest& r) {
+  const auto start = std::chrono::steady_clock::now();
+  SplatPicture picture;
+  picture.camera = r.camera;
+  picture.channel = shownChannel(r, picture.note);
+  const GBuffer& gbuffer = gbufferFor(r);
+  static const auto none = std::make_shared<const Image<vec3>>();
+  const Image<vec3>& lit = picture.channel == Channel::Lit ? litFor(r) : *none;
+  if (picture.channel == Channel::Depth) picture.limits = robustLimits(gbuffer.depth_m.pixels);
+  const Image<vec3> sky = r.sky && r.light ? skyOf(r.camera, *r.light, r.yaw_rad) : Image<vec3>();
+  picture.pixels = channelPicture(
+      gbuffer, lit, sky,
+      {.channel = picture.channel, .exposure_stops = r.exposure_stops, .limits = picture.limits});
+  picture.gbuffer = gbuffer_;
+  picture.lit = picture.channel == Channel::Lit ? lit_ : none;
+  picture.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return picture;
+}
+
+}  // namespace beam

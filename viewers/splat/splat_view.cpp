@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewers/splat/splat_view.h"
+
+#include <QPainter>
+
+#include <algorithm>
+#include <cmath>
+
+#include "viewers/encode.h"
+#include "viewers/splat/channel_picture.h"
+
+namespace beam {
+namespace {
+
+constexpr int kRest_ms = 160;            // without movement before the full picture
+constexpr double kMovingBudget_ms = 45;  // a coarse picture should take no longer
+constexpr int kCoarsest = 4;
+
+SharedPicture pictureOf(const Image<u8vec3>& photo) {
+  auto picture = std::make_shared<Image<u8vec4>>(photo.width, photo.height);
+  std::transform(photo.pixels.begin(), photo.pixels.end(), picture->pixels.begin(),
+                 [](u8vec3 c) { return u8vec4(c, 255); });
+  return picture;
+}
+
+}  // namespace
+
+Bounds boundsOf(const std::vector<vec3>& positions_m) {
+  if (positions_m.empty()) return {};
+  Bounds bounds;
+  std::vector<float> values(positions_m.size());
+  const auto quantile = [&](double share) {
+    const auto nth =
+        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = positions_m[i][axis];
+    bounds.center_m[axis] = 0.5f * (quantile(0.02) + quantile(0.98));
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = glm::distance(positions_m[i], bounds.center_m);
+  bounds.radius_m = std::max(1.1f * quantile(0.98), 1e-3f);
+  return bounds;
+}
+
+SplatView::SplatView(std::shared_ptr<ComputeDevice> device, QWidget* parent)
+    : PictureCanvas(parent), renderer_(std::make_shared<SplatRenderer>(std::move(device))) {
+  rest_timer_.setSingleShot(true);
+  rest_timer_.setInterval(kRest_ms);
+  connect(&rest_timer_, &QTimer::timeout, this, [this] { request(1); });
+}
+
+SplatView::~SplatView() = default;
+
+void SplatView::setScene(const SplatScene& scene, const QString& caption) {
+  scene_ = scene;
+  caption_ = caption;
+  if (!scene_.cloud || scene_.cloud->size() == 0) {
+    scene_ = {};
+    shown_ = {};
+    shown_ticket_ = ++newest_ticket_;
+    setPicture(0, nullptr);
+    return;
+  }
+  if (!framed_) goHome();
+  framed_ = true;
+  changed(Pace::Resting);
+}
+
+void SplatView::setCapture(std::shared_ptr<const CaptureSet> capture, FrameIndex frame) {
+  if (capture != capture_) framed_ = false;
+  capture_ = std::move(capture);
+  frame_ = frame;
+  photo_of_.reset();
+  lookThrough(std::nullopt);
+}
+
+void SplatView::setLight(std::shared_ptr<const PreparedLight> light, const QString& name) {
+  light_ = std::move(light);
+  light_name_ = name;
+  changed(Pace::Resting);
+}
+
+void SplatView::setState(const ViewState& state) {
+  const bool other_camera = state.look_through != state_.look_through;
+  state_ = state;
+  framed_ = true;
+  if (other_camera) loadPhoto();
+  changed(Pace::Resting);
+}
+
+void SplatView::setChannel(Channel channel) {
+  state_.channel = channel;
+  changed(Pace::Resting);
+}
+
+void SplatView::setExposure(float stops) {
+  state_.exposure_stops = std::clamp(stops, -10.0f, 10.0f);
+  changed(Pace::Moving);
+}
+
+void SplatView::setYaw(float yaw_rad) {
+  state_.yaw_rad = std::remainder(yaw_rad, 2 * kPi);
+  changed(Pace::Moving);
+}
+
+void SplatView::setSky(bool shown) {
+  state_.sky = shown;
+  changed(Pace::Resting);
+}
+
+void SplatView::setPhotoOpacity(float opacity) {
+  state_.photo_opacity = std::clamp(opacity, 0.0f, 1.0f);
+  keep_photo_opacity_ = true;
+  update();
+  Q_EMIT stateChanged(state_);
+}
+
+void SplatView::lookThrough(std::optional<ViewIndex> view) {
+  if (view && !capture_) return;
+  state_.look_through = view;
+  if (view && !keep_photo_opacity_) state_.photo_opacity = 0.5f;
+  loadPhoto();
+  changed(Pace::Resting);
+}
+
+void SplatView::leaveCamera() {
+  if (!state_.look_through) return;
+  const Camera& camera = capture_->views[state_.look_through->value].camera;
+  const Bounds bounds = sceneBounds();
+  const dvec3 to_center = camera.camera_from_world * dvec3(bounds.center_m);
+  state_.orbit = orbitOf(camera, std::max(static_cast<float>(to_center.z), 0.1f));
+  lookThrough(std::nullopt);
+}
+
+Bounds SplatView::sceneBounds() const {
+  if (scene_.cloud) return boundsOf(scene_.cloud->position_m);
+  return capture_ ? boundsOf(capture_->seed_points.position_m) : Bounds{};
+}
+
+void SplatView::goHome() {
+  const float field_of_view = state_.orbit.field_of_view_rad;
+  state_.orbit = OrbitCamera{};
+  if (capture_ && !capture_->views.empty()) {
+    state_.orbit = orbitOf(capture_->views.front().camera, 1);
+    state_.orbit.elevation_rad = std::clamp(state_.orbit.elevation_rad, -0.2f, 0.3f);
+  }
+  state_.orbit.field_of_view_rad = field_of_view;
+  state_.orbit.frame(sceneBounds());
+  lookThrough(std::nullopt);
+}
+
+void SplatView::changed(Pace pace) {
+  if (pace == Pace::Moving) {
+    const double factor = std::sqrt(full_milliseconds_ / kMovingBudget_ms);
+    request(std::clamp(static_cast<int>(std::ceil(factor)), 1, kCoarsest));
+    rest_timer_.start();
+  } else {
+    request(1);
+  }
+  Q_EMIT stateChanged(state_);
+  update();
+}
+
+Camera SplatView::cameraFor(int width_px, int height_px) const {
+  if (state_.look_through && capture_) {
+    return fittedTo(capture_->views[state_.look_through->value].camera, width_px, height_px);
+  }
+  return state_.orbit.camera(width_px, height_px);
+}
+
+void SplatView::request(int divisor) {
+  if (!scene_.cloud || width() < 8 || height() < 8) return;
+  if (divisor == 1) rest_timer_.stop();
+  const double ratio = devicePixelRatioF();
+  const int w = std::max(8, static_cast<int>(width() * ratio) / divisor);
+  const int h = std::max(8, static_cast<int>(height() * ratio) / divisor);
+  const SplatRequest wish{.scene = scene_,
+                          .camera = cameraFor(w, h),
+                          .channel = state_.channel,
+                          .light = light_,
+                          .yaw_rad = state_.yaw_rad,
+                          .exposure_stops = state_.exposure_stops,
+                          .sky = state_.sky};
+  const std::uint64_t ticket = ++newest_ticket_;
+  worker_.submit([this, wish, divisor, ticket, renderer = renderer_] {
+    SplatPicture picture;
+    try {
+      picture = renderer->render(wish);
+    } catch (const std::exception& e) {  // the border of this thread: the view says it instead of a picture
+      picture.note = e.what();
+    }
+    auto held = std::make_shared<SplatPicture>(std::move(picture));
+    QMetaObject::invokeMethod(
+        this, [this, held, divisor, ticket] { take(std::move(*held), divisor, ticket); },
+        Qt::QueuedConnection);
+  });
+}
+
+void SplatView::take(SplatPicture picture, int divisor, std::uint64_t ticket) {
+  if (!scene_.cloud) return;
+  shown_ = std::move(picture);
+  shown_ticket_ = ticket;
+  shown_divisor_ = divisor;
+  if (divisor == 1 && shown_.milliseconds > 0) full_milliseconds_ = shown_.milliseconds;
+  setPicture(0, shown_.pixels.empty() ? nullptr : std::make_shared<Image<u8vec4>>(std::move(shown_.pixels)));
+  Q_EMIT pictureShown();
+}
+
+bool SplatView::settled() const {
+  return !scene_.cloud || (shown_ticket_ == newest_ticket_ && shown_divisor_ == 1);
+}
+
+void SplatView::loadPhoto() {
+  if (state_.look_through == photo_of_) return;
+  photo_of_ = state_.look_through;
+  photo_note_.clear();
+  setPicture(1, nullptr);
+  if (!photo_of_ || !capture_ || !capture_->source) return;
+  photo_worker_.submit([this, capture = capture_, view = *photo_of_, frame = frame_] {
+    SharedPicture picture;
+    QString note;
+    try {
+      picture = pictureOf(capture->source->photo(view, frame));
+    } catch (const std::exception& e) {
+      note = QString::fromStdString(e.what());
+    }
+    QMetaObject::invokeMethod(
+        this,
+        [this, picture, note, view] {
+          if (photo_of_ != view) return;
+          photo_note_ = note;
+          setPicture(1, picture);
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+QRectF SplatView::photoFrame() const {
+  const Camera& camera = capture_->views[state_.look_through->value].camera;
+  const double scale =
+      std::min(static_cast<double>(width()) / camera.width, static_cast<double>(height()) / camera.height);
+  const QSizeF size(scale * camera.width, scale * camera.height);
+  return {QPointF((width() - size.width()) / 2, (height() - size.height()) / 2), size};
+}
+
+PictureLayout SplatView::pictureLayout() const {
+  PictureLayout layout;
+  layout.target[0] = rect();
+  if (state_.look_through && capture_) {
+    layout.target[1] = photoFrame();
+    layout.over_opacity = state_.photo_opacity;
+  }
+  return layout;
+}
+
+QString SplatView::title() const {
+  const Channel channel = shown_.channel;
+  QStringList parts{infoOf(channel).title, infoOf(channel).legend};
+  if (channel == Channel::Lit && !light_name_.isEmpty()) {
+    parts << QString("light %1 turned %2°").arg(light_name_).arg(std::lround(state_.yaw_rad * 180 / kPi));
+  }
+  if (state_.look_through && capture_) {
+    const View& view = capture_->views[state_.look_through->value];
+    parts << QString("camera %1 (%2)")
+                 .arg(QString::fromStdString(view.name), view.split == Split::Test ? "test" : "train");
+    if (state_.photo_opacity > 0 && hasPicture(1)) {
+      parts << QString("photograph over it %1 %").arg(std::lround(100 * state_.photo_opacity));
+    }
+  } else {
+    parts << "free camera";
+  }
+  if (!caption_.isEmpty()) parts << caption_;
+  if (state_.exposure_stops != 0)
+    parts << QString("exposure %1").arg(QString::asprintf("%+.1f", state_.exposure_stops));
+  return parts.join(" · ");
+}
+
+void SplatView::paintOver(QPainter& painter) {
+  if (!scene_.cloud) {
+    if (!capture_) {
+      paintMessage(painter, rect(), "Drop a capture folder here, or open the sample",
+                   "File > Open capture, File > Open project and File > Open sample do the same.");
+    } else {
+      paintMessage(painter, rect(), "No Gaussians yet", "Press Run to compute them from the photographs.");
+    }
+    return;
+  }
+  if (state_.look_through && capture_) {
+    painter.setPen(QPen(QColor(255, 255, 255, 90), 1));
+    painter.setBrush(Qt::NoBrush);
+    painter.drawRect(photoFrame().adjusted(0.5, 0.5, -0.5, -0.5));
+  }
+  paintLabel(painter, {10, 10}, Qt::AlignLeft | Qt::AlignTop, title());
+  const QString note = photo_note_.isEmpty() ? QString::fromStdString(shown_.note) : photo_note_;
+  paintLabel(painter, {10, height() - 10.0}, Qt::AlignLeft | Qt::AlignBottom, note);
+  const bool depth = shown_.channel == Channel::Depth;
+  if (hasPicture(0) && shown_.note.empty() && (depth || shown_.channel == Channel::Roughness)) {
+    paintScale(painter, {width() - 18.0, 14}, shown_.limits, depth ? "m" : "");
+  }
+}
+
+void SplatView::resizeGL(int, int) { changed(Pace::Moving); }
+
+}  // namespace beam
