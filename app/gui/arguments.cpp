@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/gui/arguments.h"
+
+#include <QCommandLineParser>
+
+#include "core/base/error.h"
+
+namespace beam {
+namespace {
+
+[[noreturn]] void refuse(const QString& words) { throw Error(Error::Kind::Usage, words.toStdString()); }
+
+double numberOf(const QCommandLineParser& parser, const QString& name) {
+  bool good = false;
+  const double value = parser.value(name).toDouble(&good);
+  if (!good) refuse(QString("--%1 expects a number, found \"%2\"").arg(name, parser.value(name)));
+  return value;
+}
+
+}  // namespace
+
+StudioArguments parseArguments(QCoreApplication& application) {
+  QCommandLineParser parser;
+  parser.setApplicationDescription("BEAM Studio: multi-view photographs in, relightable Gaussians out.");
+  parser.addHelpOption();
+  parser.addVersionOption();
+  parser.addPositionalArgument("PATH", "A capture folder or a project, Name.beam.", "[CAPTURE|P.beam]");
+  const auto add = [&](const char* name, const char* help, const char* value = nullptr,
+                       const char* otherwise = "") {
+    parser.addOption(value ? QCommandLineOption(name, help, value, otherwise)
+                           : QCommandLineOption(name, help));
+  };
+  add("view", "View to start with: splat, image or scene.", "NAME", "splat");
+  add("channel", "Channel of the splat view: lit, radiance, base_color, ao, roughness, normal or depth.",
+      "NAME", "lit");
+  add("camera", "Camera to look through.", "NAME");
+  add("frame", "Frame to show, by the capture's name.", "NAME");
+  add("environment", "Panorama to light with.", "FILE");
+  add("yaw", "Turn of the light in degrees.", "DEG", "0");
+  add("photo", "Opacity of the photograph over the camera's render, 0 to 1.", "SHARE");
+  add("sky", "Show the panorama behind the subject.");
+  add("mesh", "Show the mesh instead of the ellipsoids in the scene view.");
+  add("a", "Picture A of the image view: photo, mask, render.CHANNEL or map.NAME.", "ID");
+  add("b", "Picture B, under a wipe.", "ID");
+  add("stage", "Stage whose settings are shown.", "NAME");
+  add("run", "Start a run of the frame.");
+  add("until", "Last stage of that run.", "STAGE");
+  add("wait-run", "Take the screenshot only when the run has ended.");
+  add("screenshot",
+      "Write the window as a PNG file and quit, with the layout as it ships; for reviews without a "
+      "person (works under xvfb-run).",
+      "FILE");
+  add("after", "Seconds to wait before the screenshot, once everything is shown.", "S", "0");
+  add("simd", "auto, avx512, avx2 or scalar.", "NAME", "auto");
+  add("threads", "Threads to use; 0: all.", "N", "0");
+  parser.process(application);
+
+  StudioArguments a;
+  if (parser.positionalArguments().size() > 1)
+    refuse("one capture or project is expected, found " + parser.positionalArguments().join(", "));
+  if (!parser.positionalArguments().isEmpty()) a.path = parser.positionalArguments().front();
+  const auto view = studioViewNamed(parser.value("view").toStdString());
+  if (!view) refuse("--view expects splat, image or scene, found \"" + parser.value("view") + "\"");
+  a.view = *view;
+  const auto channel = channelNamed(parser.value("channel").toStdString());
+  if (!channel)
+    refuse("--channel expects lit, radiance, base_color, ao, roughness, normal or depth, found \"" +
+           parser.value("channel") + "\"");
+  a.channel = *channel;
+  a.camera = parser.value("camera");
+  a.frame = parser.value("frame");
+  a.environment = parser.value("environment");
+  a.left = parser.value("a");
+  a.right = parser.value("b");
+  a.select = parser.value("stage");
+  a.screenshot = parser.value("screenshot");
+  a.until = parser.value("until");
+  a.yaw_deg = numberOf(parser, "yaw");
+  a.after_s = numberOf(parser, "after");
+  if (parser.isSet("photo")) a.photo = numberOf(parser, "photo");
+  a.sky = parser.isSet("sky");
+  a.mesh = parser.isSet("mesh");
+  a.run = parser.isSet("run");
+  a.wait_run = parser.isSet("wait-run");
+  a.device.simd = parser.value("simd").toStdString();
+  a.device.threads = static_cast<int>(numberOf(parser, "threads"));
+  return a;
+}
+
+}  // namespace beam

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/gui/errand.h"
+
+#include <QApplication>
+#include <QPixmap>
+
+#include <cstdio>
+
+#include "ui/image_page.h"
+#include "ui/message_panel.h"
+#include "ui/stage_rail.h"
+#include "viewers/scene/scene_view.h"
+#include "viewers/splat/splat_view.h"
+
+namespace beam {
+namespace {
+
+constexpr int kTick_ms = 50;
+constexpr int kCalm_ms = 300;  // nothing new for that long: the window is what it will be
+constexpr float kDegrees = 180 / kPi;
+
+}  // namespace
+
+Errand::Errand(MainWindow& window, const StudioArguments& arguments)
+    : window_(window), arguments_(arguments) {
+  connect(&window_.model(), &ProjectModel::opened, this, [this] {
+    if (!shown_) show();
+  });
+  connect(&window_.model(), &ProjectModel::valuesChanged, this, [this] {
+    if (values_came_) return;
+    values_came_ = true;
+    if (!arguments_.left.isEmpty()) window_.imagePage().choosePictures(arguments_.left, arguments_.right);
+  });
+  timer_.setInterval(kTick_ms);
+  connect(&timer_, &QTimer::timeout, this, &Errand::tick);
+  window_.showView(arguments_.view);
+  if (!arguments_.path.isEmpty()) window_.open(arguments_.path.toStdString());
+  if (!arguments_.screenshot.isEmpty()) timer_.start();
+}
+
+std::optional<ViewIndex> Errand::cameraNamed(const QString& name) const {
+  const auto& views = window_.model().capture()->views;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].name == name.toStdString()) return ViewIndex{static_cast<std::int32_t>(i)};
+  }
+  return std::nullopt;
+}
+
+void Errand::show() {
+  shown_ = true;
+  const auto& frames = window_.model().capture()->frames;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i] == arguments_.frame.toStdString())
+      window_.model().setFrame(FrameIndex{static_cast<std::int32_t>(i)});
+  }
+  if (!arguments_.frame.isEmpty() && window_.model().frameName() != arguments_.frame) {
+    return giveUp("the capture has no frame \"" + arguments_.frame + "\"");
+  }
+  SplatView& splats = window_.splatView();
+  splats.setChannel(arguments_.channel);
+  splats.setYaw(static_cast<float>(arguments_.yaw_deg) / kDegrees);
+  splats.setSky(arguments_.sky);
+  if (arguments_.photo >= 0) splats.setPhotoOpacity(static_cast<float>(arguments_.photo));
+  if (!arguments_.camera.isEmpty()) {
+    const auto view = cameraNamed(arguments_.camera);
+    if (!view) return giveUp("the capture has no camera \"" + arguments_.camera + "\"");
+    splats.lookThrough(view);
+    window_.imagePage().choose(*view);
+  }
+  if (arguments_.mesh) {
+    window_.sceneView().setLayerShown(SceneLayer::Mesh, true);
+    window_.sceneView().setLayerShown(SceneLayer::Gaussians, false);
+  }
+  if (!arguments_.environment.isEmpty()) window_.open(arguments_.environment.toStdString());
+  if (!arguments_.select.isEmpty()) window_.rail().select(arguments_.select.toStdString());
+  if (arguments_.run) {
+    window_.run(arguments_.until.toStdString());
+    run_started_ = true;
+  }
+}
+
+void Errand::tick() {
+  const bool runs = run_started_ && window_.job().busy();
+  const bool busy =
+      (runs && arguments_.wait_run) || (!runs && !window_.settled()) || window_.model().opening();
+  if (busy) {
+    settled_since_.invalidate();
+    return;
+  }
+  if (!settled_since_.isValid()) settled_since_.start();
+  if (static_cast<double>(settled_since_.elapsed()) >= kCalm_ms + 1000 * arguments_.after_s) takePicture();
+}
+
+void Errand::takePicture() {
+  timer_.stop();
+  if (!window_.grab().save(arguments_.screenshot, "PNG")) {
+    return giveUp("the picture \"" + arguments_.screenshot + "\" cannot be written; choose another place");
+  }
+  window_.close();
+  QApplication::exit(0);
+}
+
+void Errand::giveUp(const QString& why) {
+  std::fprintf(stderr, "error: %s\n", why.toUtf8().constData());
+  window_.close();
+  QApplication::exit(exitCode(Error::Kind::Usage));
+}
+
+}  // namespace beam

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// beam-studio: puts the window together with the stages, the device and the sample, and runs it.
+#include <QApplication>
+#include <QMessageBox>
+
+#include <cstdio>
+
+#include "app/gui/errand.h"
+#include "app/services.h"
+#include "core/base/error.h"
+#include "core/sample/make_sample.h"
+#include "ui/theme.h"
+#include "viewers/gl/functions.h"
+
+namespace {
+
+// Without a picture to take there is a person before the screen; say it in a window, too.
+int report(const beam::Error& error, bool person) {
+  std::fprintf(stderr, "error: %s\n", error.what());
+  if (person) QMessageBox::critical(nullptr, "BEAM Studio cannot start", error.what());
+  return beam::exitCode(error.kind());
+}
+
+int runStudio(QApplication& application) {
+  beam::StudioArguments arguments;
+  try {
+    arguments = beam::parseArguments(application);
+  } catch (const beam::Error& e) {
+    return report(e, false);
+  }
+  const bool person = arguments.screenshot.isEmpty();
+  try {
+    beam::requireOpenGl();
+    const beam::Services services = beam::makeServices();
+    beam::StudioServices studio{
+        .pipeline = services.pipeline,
+        .job_device = beam::makeDevice(arguments.device),
+        .view_device = beam::makeDevice(arguments.device),
+        .make_sample = [](const std::filesystem::path& folder,
+                          beam::Progress& progress) { beam::makeSample(folder, {}, progress); },
+        .version = beam::versionText(),
+    };
+    beam::applyTheme(application);
+    beam::MainWindow window(std::move(studio),
+                            person ? beam::MainWindow::Layout::Remembered : beam::MainWindow::Layout::Fresh);
+    window.show();
+    const beam::Errand errand(window, arguments);
+    return QApplication::exec();
+  } catch (const beam::Error& e) {
+    return report(e, person);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
+  QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
+  QApplication application(argc, argv);
+  QApplication::setOrganizationName("BEAM Studio");
+  QApplication::setApplicationName("beam-studio");
+  QApplication::setApplicationVersion(beam::versionText());
+  return runStudio(application);
+}

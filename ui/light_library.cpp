@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ui/light_library.h"
+
+#include <algorithm>
+
+#include "core/io/image_file.h"
+#include "core/scene/environment.h"
+
+namespace beam {
+
+LightLibrary::LightLibrary(QObject* parent) : QObject(parent) {}
+LightLibrary::~LightLibrary() = default;
+
+void LightLibrary::reset(const std::filesystem::path& dome) {
+  entries_.clear();
+  prepared_.clear();
+  chosen_ = -1;
+  if (!dome.empty()) entries_.push_back({"Dome of the capture", dome});
+  Q_EMIT entriesChanged();
+  choose(dome.empty() ? -1 : 0);
+}
+
+void LightLibrary::add(const std::filesystem::path& file) {
+  const auto known =
+      std::find_if(entries_.begin(), entries_.end(), [&](const LightEntry& e) { return e.file == file; });
+  const auto index = static_cast<int>(known - entries_.begin());
+  if (known == entries_.end()) {
+    entries_.push_back({QString::fromStdString(file.stem().string()), file});
+    Q_EMIT entriesChanged();
+  }
+  choose(index);
+}
+
+void LightLibrary::choose(int index) {
+  chosen_ = index;
+  const std::uint64_t ticket = ++ticket_;
+  if (index < 0 || prepared_.contains(entries_[index].file)) {
+    seen_ = ticket;
+    Q_EMIT lightChanged();
+    return;
+  }
+  worker_.submit([this, file = entries_[index].file, ticket] {
+    std::shared_ptr<const PreparedLight> light;
+    QString error;
+    try {
+      light = std::make_shared<const PreparedLight>(makeEnvironment(readRadiance(file)));
+    } catch (const std::exception& e) {  // the border of this thread: said in the window
+      error = QString::fromStdString(e.what());
+    }
+    QMetaObject::invokeMethod(
+        this,
+        [this, file, light, error, ticket] {
+          if (light) prepared_[file] = light;
+          if (ticket != ticket_) return;
+          seen_ = ticket;
+          if (!error.isEmpty()) {
+            entries_.erase(entries_.begin() + chosen_);
+            chosen_ = -1;
+            Q_EMIT failed("This panorama cannot be used", error);
+            Q_EMIT entriesChanged();
+          }
+          Q_EMIT lightChanged();
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+std::shared_ptr<const PreparedLight> LightLibrary::light() const {
+  if (chosen_ < 0) return nullptr;
+  const auto found = prepared_.find(entries_[chosen_].file);
+  return found == prepared_.end() ? nullptr : found->second;
+}
+
+QString LightLibrary::name() const { return chosen_ < 0 ? QString() : entries_[chosen_].name; }
+
+}  // namespace beam

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The panoramas one can light with: the capture's dome first, then those the user opened. Read and prepared
+// for shading on a background thread, kept once prepared.
+#pragma once
+
+#include <QObject>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "core/render/deferred.h"
+#include "viewers/latest_worker.h"
+
+namespace beam {
+
+struct LightEntry {
+  QString name;
+  std::filesystem::path file;
+};
+
+class LightLibrary final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit LightLibrary(QObject* parent = nullptr);
+  ~LightLibrary() override;
+
+  // Starts anew with the dome of a capture, if it has one; chooses it.
+  void reset(const std::filesystem::path& dome);
+  // Adds the file (once) and chooses it.
+  void add(const std::filesystem::path& file);
+  void choose(int index);
+
+  const std::vector<LightEntry>& entries() const { return entries_; }
+  int chosen() const { return chosen_; }               // -1: none
+  std::shared_ptr<const PreparedLight> light() const;  // of the chosen one; null while it is prepared
+  QString name() const;
+  bool settled() const { return seen_ == ticket_; }
+
+ Q_SIGNALS:
+  void entriesChanged();
+  void lightChanged();
+  void failed(const QString& what, const QString& why);
+
+ private:
+  std::vector<LightEntry> entries_;
+  std::map<std::filesystem::path, std::shared_ptr<const PreparedLight>> prepared_;
+  int chosen_ = -1;
+  std::uint64_t ticket_ = 0, seen_ = 0;
+  LatestWorker worker_;  // last: it stops first
+};
+
+}  // namespace beam

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The open project as the window sees it: settings edited here on the window's thread; capture, states and
+// results read on background threads and announced when they are there.
+#pragma once
+
+#include <QObject>
+#include <QTimer>
+
+#include "core/pipeline/frame_result.h"
+#include "ui/studio_services.h"
+#include "viewers/latest_worker.h"
+
+namespace beam {
+
+// A stage over all frames.
+struct StageStatus {
+  std::string id;
+  QString title, summary;
+  StepState state = StepState::Pending;  // of the current frame
+  int done = 0, frames = 0;              // frames that are done
+  QString detail;                        // why it is blocked or failed
+};
+
+struct FrameValues {
+  std::shared_ptr<const GaussianCloud> cloud;  // null: not there yet
+  std::shared_ptr<const Materials> materials;
+  std::shared_ptr<const Mesh> mesh;
+};
+
+class ProjectModel final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit ProjectModel(StudioServices services, QObject* parent = nullptr);
+  ~ProjectModel() override;
+
+  // A project folder, or a capture (a project for it is found or made beside it; on disk from the first save
+  // on). Answers with opened() or failed().
+  void open(const std::filesystem::path& path);
+  bool opening() const { return opening_; }
+
+  bool isOpen() const { return project_.has_value(); }
+  const Project& project() const { return *project_; }
+  std::shared_ptr<const CaptureSet> capture() const { return capture_; }
+  const StudioServices& services() const { return services_; }
+
+  FrameIndex frame() const { return frame_; }
+  void setFrame(FrameIndex frame);
+  QString frameName() const;
+
+  // Edits; a refused one answers with failed().
+  void set(const std::string& key, const FieldValue& value);
+  void reset(const std::string& key);
+  void setPreset(const std::string& name);
+  void setEnvironment(const std::filesystem::path& file);
+  // False, and failed(), when it cannot be written.
+  bool save();
+  bool unsaved() const { return unsaved_; }
+
+  // Looks at the disk again: states of all stages; the frame's values, too, when `values`.
+  void refresh(bool values = true);
+  const std::vector<StageStatus>& stages() const { return stages_; }
+  const FrameValues& values() const { return values_; }
+  // States and values of the last refresh have arrived.
+  bool settled() const {
+    return !opening_ && states_seen_ == states_ticket_ && values_seen_ == values_ticket_;
+  }
+
+ Q_SIGNALS:
+  void openingStarted(const QString& path);
+  void opened();
+  void failed(const QString& what, const QString& why);
+  void settingsChanged();
+  void stagesChanged();
+  void frameChanged();
+  void valuesChanged();
+
+ private:
+  struct Opened;
+  void adopt(const std::shared_ptr<Opened>& result);
+  void edited();
+  void saveQuietly();
+
+  StudioServices services_;
+  std::optional<Project> project_;
+  std::shared_ptr<const CaptureSet> capture_;
+  FrameIndex frame_;
+  std::vector<StageStatus> stages_;
+  FrameValues values_;
+  bool opening_ = false, unsaved_ = false;
+  // A refresh that a newer one overtakes never answers; the newest always does.
+  std::uint64_t states_ticket_ = 0, states_seen_ = 0, values_ticket_ = 0, values_seen_ = 0;
+  QTimer autosave_;
+  LatestWorker states_worker_, values_worker_, open_worker_;  // last: they stop first
+};
+
+// Where the project of a capture lies when nobody says: beside it, or in the documents when that is not
+// writable.
+std::filesystem::path projectFolderFor(const std::filesystem::path& capture);
+
+}  // namespace beam

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the window is given by the program that makes it; the window itself knows no stage and no device by
+// name.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/pipeline/project.h"
+#include "core/render/device.h"
+
+namespace beam {
+
+struct StudioServices {
+  std::shared_ptr<const PipelineSetup> pipeline;
+  // Two devices: a job and a view do not wait for each other.
+  std::shared_ptr<ComputeDevice> job_device, view_device;
+  // Writes the sample capture into a folder that does not exist; empty: none comes with the program.
+  std::function<void(const std::filesystem::path&, Progress&)> make_sample;
+  std::string version;
+};
+
+}  // namespace beam
