@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/gl/picture_canvas.h"
 
+#include <QFontInfo>
+#include <QOpenGLPaintDevice>
 #include <QPainter>
 
 namespace beam {
@@ -56,7 +58,11 @@ void PictureCanvas::paintGL() {
   if (pictures_[1] && style.opacity > 0)
     quads_->draw(textures_[1], scaled(layout.target[1]), framebuffer, style);
 
-  QPainter painter(this);
+  // Not QPainter(this): when a parent is grabbed, Qt would send its strokes elsewhere.
+  QOpenGLPaintDevice device(framebuffer.toSize());
+  device.setDevicePixelRatio(ratio);
+  QPainter painter(&device);
+  painter.setFont(font());
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setRenderHint(QPainter::TextAntialiasing);
   paintOver(painter);
@@ -99,7 +105,7 @@ void paintScale(QPainter& painter, QPointF at, const Limits& limits, const QStri
 void paintMessage(QPainter& painter, const QRectF& area, const QString& title, const QString& body) {
   QFont font = painter.font();
   const QFont plain = font;
-  font.setPointSizeF(font.pointSizeF() * 1.5);
+  font.setPixelSize(QFontInfo(plain).pixelSize() * 3 / 2);
   painter.setFont(font);
   painter.setPen(QColor(206, 210, 216));
   const QRectF upper(area.left(), area.top(), area.width(), area.height() / 2 - 6);

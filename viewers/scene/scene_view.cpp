@@ -106,6 +106,7 @@ void SceneView::State::addActors() {
 void SceneView::State::layOut() {
   auto* row = new QHBoxLayout;
   row->setContentsMargins(8, 6, 8, 6);
+  row->setSpacing(6);
   for (int i = 0; i < kSceneLayerCount; ++i) {
     auto* button = new QToolButton;
     button->setText(kTitles[i]);
@@ -121,13 +122,15 @@ void SceneView::State::layOut() {
   row->addStretch();
   facts = new QLabel;
   facts->setObjectName("quiet");
-  row->addWidget(facts);
+  facts->setContentsMargins(10, 0, 10, 6);
+  facts->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // words must not widen the window
   vtk = new QVTKOpenGLNativeWidget;
   vtk->setRenderWindow(window.Get());
   auto* column = new QVBoxLayout(&owner);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
   column->addLayout(row);
+  column->addWidget(facts);
   column->addWidget(vtk, 1);
 }
 
@@ -189,16 +192,17 @@ void SceneView::setCapture(std::shared_ptr<const CaptureSet> capture) {
     s.build(SceneLayer::SeedPoints, {}, {});
     return;
   }
-  std::vector<vec3> places = capture->seed_points.position_m;
-  for (const View& view : capture->views) places.emplace_back(centerOf(view.camera));
-  s.bounds = boundsOf(places);
+  std::vector<vec3> eyes;
+  for (const View& view : capture->views) eyes.emplace_back(centerOf(view.camera));
+  s.bounds = boundsOf(eyes);
+  s.bounds.radius_m *= 0.8f;  // seen from outside, a ring of cameras fills less than its ball
   std::size_t tests = 0;
   for (const View& view : capture->views) tests += view.split == Split::Test ? 1 : 0;
   const QString cameras = QString("%1 cameras, %2 of them test").arg(capture->views.size()).arg(tests);
   const QString points = QString("%L1 seed points").arg(capture->seed_points.position_m.size());
   s.build(
       SceneLayer::Cameras,
-      [capture, size = 0.12 * s.bounds.radius_m] { return frustaOf(capture->views, size); }, cameras);
+      [capture, size = 0.11 * s.bounds.radius_m] { return frustaOf(capture->views, size); }, cameras);
   s.build(
       SceneLayer::SeedPoints, [capture] { return pointsOf(capture->seed_points); }, points);
   goHome();

@@ -13,7 +13,7 @@ namespace beam {
 struct ChannelOptions {
   Channel channel = Channel::Radiance;
   float exposure_stops = 0;  // of colours of light and reflectance, not of data
-  Limits limits;             // of false colour
+  Limits limits = {};        // of false colour
 };
 
 // Whether the G-buffer holds the channel; Lit counts when `lit` is there.

@@ -63,7 +63,7 @@ void SplatView::setScene(const SplatScene& scene, const QString& caption) {
     setPicture(0, nullptr);
     return;
   }
-  if (!framed_) goHome();
+  if (!framed_) frameScene();
   framed_ = true;
   changed(Pace::Resting);
 }
@@ -139,7 +139,7 @@ Bounds SplatView::sceneBounds() const {
   return capture_ ? boundsOf(capture_->seed_points.position_m) : Bounds{};
 }
 
-void SplatView::goHome() {
+void SplatView::frameScene() {
   const float field_of_view = state_.orbit.field_of_view_rad;
   state_.orbit = OrbitCamera{};
   if (capture_ && !capture_->views.empty()) {
@@ -148,6 +148,10 @@ void SplatView::goHome() {
   }
   state_.orbit.field_of_view_rad = field_of_view;
   state_.orbit.frame(sceneBounds());
+}
+
+void SplatView::goHome() {
+  frameScene();
   lookThrough(std::nullopt);
 }
 
@@ -218,6 +222,10 @@ void SplatView::loadPhoto() {
   photo_note_.clear();
   setPicture(1, nullptr);
   if (!photo_of_ || !capture_ || !capture_->source) return;
+  if (!capture_->source->has(*photo_of_, frame_)) {
+    photo_note_ = "The capture holds no photograph of this camera for this frame: only the render is shown.";
+    return;
+  }
   photo_worker_.submit([this, capture = capture_, view = *photo_of_, frame = frame_] {
     SharedPicture picture;
     QString note;

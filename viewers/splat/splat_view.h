@@ -41,6 +41,7 @@ class SplatView final : public PictureCanvas {
   bool handleKey(const QKeyEvent& event);
   // The newest full-size picture is on the screen.
   bool settled() const;
+  double fullPictureMilliseconds() const { return full_milliseconds_; }  // the last one took
 
  Q_SIGNALS:
   void stateChanged(const beam::ViewState& state);
@@ -65,6 +66,7 @@ class SplatView final : public PictureCanvas {
   void request(int divisor);
   void take(SplatPicture picture, int divisor, std::uint64_t ticket);
   void loadPhoto();
+  void frameScene();
   void leaveCamera();
   void nextCamera(int step);
   void cycleChannel(int step);
