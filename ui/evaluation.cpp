@@ -2,7 +2,6 @@
 #include "ui/evaluation.h"
 
 #include <QFileInfo>
-#include <QStringList>
 
 #include <nlohmann/json.hpp>
 
@@ -14,31 +13,32 @@ namespace {
 
 constexpr std::uint64_t kMost = 1 << 20;
 
-// In the order in which they are read; figures that are not named here are left out.
+// The figure a channel is judged by; the first that is there counts.
 struct Figure {
   const char *key, *words;
-  int digits;
 };
 constexpr Figure kFigures[] = {
-    {"psnr", "%1 dB", 2},        {"psnr_scaled", "%1 dB scaled", 2}, {"ssim", "SSIM %1", 4},
-    {"angle_deg", "%1°", 2},     {"mae_mm", "%1 mm mean error", 2},  {"chamfer_mm", "Chamfer %1 mm", 2},
-    {"mae", "mean error %1", 4},
-};
+    {"psnr", "%1 dB"}, {"angle_deg", "%1°"}, {"mae_mm", "%1 mm"}, {"chamfer_mm", "%1 mm"}};
 
-QString figuresOf(const nlohmann::ordered_json& scores) {
-  QStringList parts;
+QString number(const nlohmann::ordered_json& scores, const char* key, const char* words, int digits) {
+  const auto found = scores.find(key);
+  if (found == scores.end() || !found->is_number()) return {};
+  return QString(words).arg(found->get<double>(), 0, 'f', digits);
+}
+
+ScoreRow rowOf(const QString& what, const nlohmann::ordered_json& scores) {
+  ScoreRow row{what, {}, number(scores, "ssim", "%1", 4)};
   for (const Figure& f : kFigures) {
-    const auto found = scores.find(f.key);
-    if (found != scores.end() && found->is_number())
-      parts << QString(f.words).arg(found->get<double>(), 0, 'f', f.digits);
+    if (row.first.isEmpty()) row.first = number(scores, f.key, f.words, 2);
   }
-  return parts.join(" · ");
+  return row;
 }
 
 QString title(const std::string& channel) {
   QString words = QString::fromStdString(channel).replace('_', ' ');
   if (words == "rgb") return "RGB";
   if (words == "ao") return "Ambient occlusion";
+  if (words == "mesh") return "Mesh (Chamfer)";
   if (!words.isEmpty()) words[0] = words[0].toUpper();
   return words.replace("Base color", "Base colour").replace("Rgb held out", "RGB, held out");
 }
@@ -53,8 +53,10 @@ Evaluation readEvaluation(const std::filesystem::path& project) {
   try {
     const auto json = nlohmann::ordered_json::parse(readTextFile(file, kMost));
     for (const auto& [channel, scores] : json.items()) {
-      const QString figures = scores.is_object() ? figuresOf(scores) : QString();
-      if (!figures.isEmpty()) evaluation.rows.push_back({title(channel), figures});
+      // The scaled scores, which forgive a wrong gain, stay in the file.
+      if (!scores.is_object() || channel.ends_with("_scaled")) continue;
+      const ScoreRow row = rowOf(title(channel), scores);
+      if (!row.first.isEmpty()) evaluation.rows.push_back(row);
     }
     evaluation.when = QFileInfo(QString::fromStdString(file.string())).lastModified();
   } catch (const std::exception& e) {

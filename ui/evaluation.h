@@ -11,8 +11,9 @@
 namespace beam {
 
 struct ScoreRow {
-  QString what;     // "rgb"
-  QString figures;  // "33.46 dB · SSIM 0.976"
+  QString what;   // "Base colour"
+  QString first;  // "29.62 dB", "8.70°", "2.36 mm"
+  QString ssim;   // "0.9571"; empty where the evaluator gives none
 };
 
 struct Evaluation {

@@ -15,7 +15,8 @@ namespace beam {
 ImagePage::ImagePage(const ProjectModel& model, QWidget* parent)
     : QWidget(parent), model_(model), cameras_(new QComboBox), wipe_(new QToolButton), view_(new ImageView) {
   auto* row = new QHBoxLayout;
-  row->setContentsMargins(8, 6, 8, 6);
+  row->setContentsMargins(10, 6, 8, 6);
+  row->setSpacing(8);
   const auto add = [&](const QString& words, QWidget* widget, int stretch) {
     auto* label = new QLabel(words);
     label->setObjectName("quiet");
@@ -47,6 +48,7 @@ ImagePage::ImagePage(const ProjectModel& model, QWidget* parent)
   });
   for (int side = 0; side < 2; ++side) {
     connect(pictures_[side], QOverload<int>::of(&QComboBox::activated), this, [this, side] {
+      wanted_[side] = chosenId(side);
       show(side);
       if (side == 1) view_->setWipe(!chosenId(1).isEmpty());
     });
@@ -54,9 +56,10 @@ ImagePage::ImagePage(const ProjectModel& model, QWidget* parent)
   connect(wipe_, &QToolButton::toggled, view_, &ImageView::setWipe);
   connect(view_, &ImageView::wipeChanged, wipe_, &QToolButton::setChecked);
   connect(view_, &ImageView::sidesSwapped, this, [this] {
-    const QString a = chosenId(0), b = chosenId(1);
-    pictures_[0]->setCurrentIndex(std::max(0, pictures_[0]->findData(b)));
-    pictures_[1]->setCurrentIndex(std::max(0, pictures_[1]->findData(a)));
+    std::swap(wanted_[0], wanted_[1]);
+    for (int side = 0; side < 2; ++side) {
+      pictures_[side]->setCurrentIndex(std::max(0, pictures_[side]->findData(wanted_[side])));
+    }
   });
 }
 
@@ -85,17 +88,14 @@ void ImagePage::choose(ViewIndex view) {
 }
 
 void ImagePage::choosePictures(const QString& a, const QString& b) {
-  pictures_[0]->setCurrentIndex(std::max(0, pictures_[0]->findData(a)));
-  pictures_[1]->setCurrentIndex(std::max(0, pictures_[1]->findData(b)));
-  show(0);
-  show(1);
+  wanted_ = {a, b};
+  fillPictures();
   view_->setWipe(!b.isEmpty());
 }
 
 QString ImagePage::chosenId(int side) const { return pictures_[side]->currentData().toString(); }
 
 void ImagePage::fillPictures() {
-  const std::array<QString, 2> before{chosenId(0), chosenId(1)};
   sources_.clear();
   if (cameras_->currentIndex() >= 0)
     sources_ = pictureSources(model_, ViewIndex{cameras_->currentIndex()}, light_);
@@ -103,7 +103,7 @@ void ImagePage::fillPictures() {
     pictures_[side]->clear();
     if (side == 1) pictures_[side]->addItem("none", QString());
     for (const PictureSource& source : sources_) pictures_[side]->addItem(source.title, source.id);
-    pictures_[side]->setCurrentIndex(std::max(0, pictures_[side]->findData(before[side])));
+    pictures_[side]->setCurrentIndex(std::max(0, pictures_[side]->findData(wanted_[side])));
     show(side);
   }
 }

@@ -38,6 +38,7 @@ class ImagePage final : public QWidget {
   const ProjectModel& model_;
   PictureLight light_;
   std::vector<PictureSource> sources_;
+  std::array<QString, 2> wanted_{"photo", {}};  // ids; shown as soon as they exist
   QComboBox* cameras_;
   std::array<QComboBox*, 2> pictures_;
   QToolButton* wipe_;

@@ -20,7 +20,6 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
-#include "core/base/parallel.h"
 #include "ui/display_panel.h"
 #include "ui/image_page.h"
 #include "ui/log_panel.h"
@@ -44,10 +43,9 @@ QString machineText(const StudioServices& services) {
   const double memory_gb =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e9;
   return QString(
-             "%1, %2 threads, %3 GB of memory. No graphics card is needed: Gaussians are rasterised on the "
-             "processor and only shown through OpenGL.")
+             "%1, %2 GB of memory. No graphics card is needed: Gaussians are rasterised on the processor and "
+             "only shown through OpenGL.")
       .arg(QString::fromStdString(services.view_device->info().title))
-      .arg(threadCount())
       .arg(memory_gb, 0, 'f', 0);
 }
 
@@ -100,6 +98,7 @@ void MainWindow::makeParts() {
                       .detail = {}});
   }
   rail_->setStages(stages);
+  rail_->select("surface");
 }
 
 void MainWindow::makeCentre() {
@@ -164,6 +163,7 @@ void MainWindow::makeDocks() {
   connect(display, &DisplayPanel::openLightWanted, this, &MainWindow::openLight);
   auto* inspector = new QTabWidget;
   inspector->setDocumentMode(true);
+  inspector->tabBar()->setDrawBase(false);
   inspector->addTab(display, "Display");
   inspector->addTab(settings_, "Settings");
   connect(rail_, &StageRail::selectedChanged, this, [this, inspector](const std::string& stage) {
@@ -176,7 +176,7 @@ void MainWindow::makeDocks() {
   QDockWidget* bottom = dock("log", "Log", log_, Qt::BottomDockWidgetArea);
   resizeDocks({left, right}, {280, 340}, Qt::Horizontal);
   resizeDocks({bottom}, {130}, Qt::Vertical);
-  settings_->setStage("surface");
+  settings_->setStage(rail_->selected());
   reading_ = new QLabel;
   state_words_ = new QLabel;
   statusBar()->addWidget(reading_, 1);

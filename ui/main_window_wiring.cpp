@@ -39,7 +39,12 @@ void MainWindow::connectModel() {
 }
 
 void MainWindow::connectViews() {
+  connect(views_, &QStackedWidget::currentChanged, this, [this] {
+    // The light may have been turned since.
+    if (views_->currentWidget() == images_) images_->setLight({lights_.light(), splat_->state().yaw_rad});
+  });
   connect(splat_, &SplatView::hovered, reading_, &QLabel::setText);
+  connect(splat_, &SplatView::pictureShown, this, &MainWindow::showStatus);
   connect(&images_->view(), &ImageView::hovered, reading_, &QLabel::setText);
   connect(splat_, &SplatView::stateChanged, this, [this](const ViewState& state) {
     project_panel_->mark(state.look_through);
@@ -118,7 +123,7 @@ void MainWindow::showOpened() {
   scene_->setCloud(nullptr);
   scene_->setMesh(nullptr);
   images_->refresh();
-  if (rail_->selected().empty()) rail_->select("surface");
+  log_->add(LogLevel::Info, "Opened " + QString::fromStdString(model_.project().folder().string()));
   for (const std::string& warning : model_.project().imported().warnings)
     log_->add(LogLevel::Warning, QString::fromStdString(warning));
   try {
@@ -188,6 +193,9 @@ void MainWindow::showTitle() {
 void MainWindow::showStatus() {
   QStringList parts;
   if (model_.isOpen()) parts << "frame " + model_.frameName();
+  if (model_.values().cloud) {
+    parts << QString("drawn in %1 ms").arg(splat_->fullPictureMilliseconds(), 0, 'f', 0);
+  }
   parts << QString::fromStdString(services_.view_device->info().title);
   state_words_->setText(parts.join("   ·   "));
 }

@@ -40,6 +40,7 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
       frames_(new QComboBox),
       scores_(new QGridLayout),
       cameras_(new QTreeWidget) {
+  setMinimumWidth(260);
   facts_->setObjectName("quiet");
   facts_->setWordWrap(true);
   frames_->setFocusPolicy(Qt::ClickFocus);
@@ -68,6 +69,8 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
     if (index.isValid()) Q_EMIT cameraActivated(ViewIndex{index.toInt()});
   });
   connect(&model_, &ProjectModel::opened, this, &ProjectPanel::refresh);
+  connect(&model_, &ProjectModel::frameChanged, this,
+          [this] { frames_->setCurrentIndex(model_.frame().value); });
   connect(&model_, &ProjectModel::valuesChanged, this, &ProjectPanel::refreshFacts);
   connect(&model_, &ProjectModel::settingsChanged, this, &ProjectPanel::refreshFacts);
   refresh();
@@ -125,16 +128,24 @@ void ProjectPanel::refreshScores() {
                              ? QString("Last evaluation")
                              : "Last evaluation, " + QLocale::c().toString(evaluation.when, "d MMM hh:mm"));
   int row = 0;
-  for (const ScoreRow& score : evaluation.rows) {
-    auto* what = new QLabel(score.what);
-    what->setObjectName("quiet");
-    scores_->addWidget(what, row, 0, Qt::AlignTop);
-    auto* figures = new QLabel(score.figures);
-    figures->setWordWrap(true);
-    scores_->addWidget(figures, row, 1);
+  const auto put = [&](const QString& text, int column, const char* role, Qt::Alignment side) {
+    auto* label = new QLabel(text);
+    label->setObjectName(role);
+    scores_->addWidget(label, row, column, side);
+  };
+  if (!evaluation.rows.empty()) {
+    put("SSIM", 2, "quiet", Qt::AlignRight);
     ++row;
   }
-  scores_->setColumnStretch(1, 1);
+  for (const ScoreRow& score : evaluation.rows) {
+    put(score.what, 0, "quiet", Qt::AlignLeft);
+    put(score.first, 1, "", Qt::AlignRight);
+    put(score.ssim, 2, "", Qt::AlignRight);
+    ++row;
+  }
+  scores_->setColumnStretch(0, 1);
+  scores_->setVerticalSpacing(3);
+  scores_->setHorizontalSpacing(10);
   if (row > 0) return;
   auto* hint =
       new QLabel(model_.isOpen() ? "None yet. Score it with:  beam evaluate " +
@@ -142,7 +153,7 @@ void ProjectPanel::refreshScores() {
                                  : "None yet.");
   hint->setObjectName("quiet");
   hint->setWordWrap(true);
-  scores_->addWidget(hint, 0, 0, 1, 2);
+  scores_->addWidget(hint, 0, 0, 1, 3);
 }
 
 void ProjectPanel::fillCameras() {

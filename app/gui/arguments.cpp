@@ -39,7 +39,7 @@ StudioArguments parseArguments(QCoreApplication& application) {
   add("yaw", "Turn of the light in degrees.", "DEG", "0");
   add("photo", "Opacity of the photograph over the camera's render, 0 to 1.", "SHARE");
   add("sky", "Show the panorama behind the subject.");
-  add("mesh", "Show the mesh instead of the ellipsoids in the scene view.");
+  add("mesh", "Show the mesh alone in the scene view, without ellipsoids and seed points.");
   add("a", "Picture A of the image view: photo, mask, render.CHANNEL or map.NAME.", "ID");
   add("b", "Picture B, under a wipe.", "ID");
   add("stage", "Stage whose settings are shown.", "NAME");

@@ -70,6 +70,7 @@ void Errand::show() {
   if (arguments_.mesh) {
     window_.sceneView().setLayerShown(SceneLayer::Mesh, true);
     window_.sceneView().setLayerShown(SceneLayer::Gaussians, false);
+    window_.sceneView().setLayerShown(SceneLayer::SeedPoints, false);
   }
   if (!arguments_.environment.isEmpty()) window_.open(arguments_.environment.toStdString());
   if (!arguments_.select.isEmpty()) window_.rail().select(arguments_.select.toStdString());

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// The window and its parts on a virtual display: forms, opening, running, cancelling, saying what went wrong.
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QComboBox>
+#include <QDeadlineTimer>
+#include <QLineEdit>
+
+#include <thread>
+
+#include "core/io/file.h"
+#include "tests/support/sphere_capture.h"
+#include "tests/support/temp_dir.h"
+#include "ui/evaluation.h"
+#include "ui/field_editors.h"
+#include "ui/main_window.h"
+#include "ui/message_panel.h"
+#include "ui/parameter_form.h"
+#include "ui/run_bar.h"
+#include "ui/settings_panel.h"
+#include "ui/stage_rail.h"
+#include "viewers/gl/functions.h"
+#include "viewers/splat/splat_view.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::TempDir;
+
+template <class Condition>
+bool waitFor(Condition&& condition, int patience_ms = 20000) {
+  for (QDeadlineTimer deadline(patience_ms); !deadline.hasExpired();) {
+    QApplication::processEvents(QEventLoop::AllEvents, 20);
+    if (condition()) return true;
+  }
+  return false;
+}
+
+struct DemoOptions {
+  int iterations = 100;
+  double rate = 1.6e-4;
+  bool careful = true;
+  std::string solver = "linear";
+};
+void describe(Fields& f, DemoOptions& o) {
+  f.field({.name = "iterations", .label = "Iterations", .help = "Steps.", .min = 1, .max = 1000},
+          o.iterations);
+  f.field({.name = "rate", .label = "Rate", .help = "Learning rate.", .min = 0, .max = 1, .advanced = true},
+          o.rate);
+  f.field({.name = "careful", .label = "Careful", .help = "Look twice."}, o.careful);
+  f.field({.name = "solver", .label = "Solver", .help = "How.", .choices = {"linear", "adam"}}, o.solver);
+}
+
+std::vector<FieldValue> valuesOf(const std::vector<Field>& fields) {
+  std::vector<FieldValue> values;
+  for (const Field& field : fields) values.push_back(field.value);
+  return values;
+}
+
+class Form : public ::testing::Test {
+ protected:
+  Form() {
+    form.setFields(fieldsOf(options), valuesOf(fieldsOf(DemoOptions{})));
+    QObject::connect(&form, &ParameterForm::edited, &form,
+                     [this](const std::string& name, const FieldValue& value) {
+                       FieldSetter setter(name, value);
+                       describe(setter, options);
+                       ++edits;
+                     });
+  }
+  void type(const std::string& name, const QString& text) {
+    auto* line = form.editor(name)->findChild<QLineEdit*>();
+    line->setText(text);
+    Q_EMIT line->textEdited(text);
+    Q_EMIT line->editingFinished();
+  }
+
+  DemoOptions options;
+  int edits = 0;
+  ParameterForm form;
+};
+
+TEST_F(Form, EditsTheOptionsItWasMadeFrom) {
+  type("iterations", "250");
+  type("rate", "3e-5");
+  auto* solver = form.editor("solver")->findChild<QComboBox*>();
+  solver->setCurrentText("adam");
+  Q_EMIT solver->activated(solver->currentIndex());
+  EXPECT_EQ(options.iterations, 250);
+  EXPECT_EQ(options.rate, 3e-5);
+  EXPECT_EQ(options.solver, "adam");
+  EXPECT_EQ(edits, 3);
+}
+
+TEST_F(Form, RefusesWhatIsOutOfRangeOrNoNumberAndSaysSo) {
+  for (const char* wrong : {"0", "1001", "many", "2.5"}) {
+    type("iterations", wrong);
+    EXPECT_EQ(options.iterations, 100) << wrong;
+    EXPECT_FALSE(form.editor("iterations")->findChild<QLineEdit*>()->toolTip().isEmpty()) << wrong;
+  }
+  EXPECT_EQ(edits, 0);
+}
+
+TEST_F(Form, MarksWhatDiffersFromThePresetAndFoldsWhatIsAdvanced) {
+  EXPECT_FALSE(form.isMarkedChanged("iterations"));
+  options.iterations = 7;
+  form.setFields(fieldsOf(options), valuesOf(fieldsOf(DemoOptions{})));
+  EXPECT_TRUE(form.isMarkedChanged("iterations"));
+  EXPECT_FALSE(form.isMarkedChanged("rate"));
+  EXPECT_FALSE(form.advancedShown());
+  EXPECT_FALSE(form.editor("rate")->isVisibleTo(&form));
+  EXPECT_TRUE(form.editor("iterations")->isVisibleTo(&form));
+}
+
+// A capture of a sphere, in memory.
+class SphereSource final : public FrameSource {
+ public:
+  explicit SphereSource(std::vector<FrameView> views) : views_(std::move(views)) {}
+  bool has(ViewIndex, FrameIndex) const override { return true; }
+  Image<u8vec3> photo(ViewIndex view, FrameIndex) const override { return views_[view.value].photo; }
+  Image<std::uint8_t> mask(ViewIndex view, FrameIndex) const override { return views_[view.value].mask; }
+
+ private:
+  std::vector<FrameView> views_;
+};
+
+ImportedCapture sphereCapture(const fs::path&, const ImportOptions&) {
+  const std::vector<FrameView> views = testing::photographs({});
+  ImportedCapture imported;
+  imported.set.name = "sphere";
+  for (const FrameView& view : views) imported.set.views.push_back({view.name, view.camera, Split::Train});
+  imported.set.frames = {"000000"};
+  imported.set.source = std::make_shared<SphereSource>(views);
+  imported.layout = "memory";
+  return imported;
+}
+
+// A stage that does nothing, for as long as it is let.
+struct SleepOptions {
+  int steps = 100000;
+};
+void describe(Fields& f, SleepOptions& o) {
+  f.field({.name = "steps", .label = "Steps", .help = "Naps of a millisecond.", .min = 1, .max = 1e6},
+          o.steps);
+}
+class SleepStage final : public StageOf<SleepOptions> {
+ public:
+  const StageInfo& info() const override {
+    static const StageInfo kInfo{.id = "surface",
+                                 .title = "Surface",
+                                 .summary = "Sleeps.",
+                                 .steps = {{.id = "fit", .title = "Sleep"}}};
+    return kInfo;
+  }
+  void run(std::string_view, StepContext& c) const override {
+    auto cloud = std::make_shared<GaussianCloud>();
+    cloud->position_m.emplace_back(0, 1, 0);
+    cloud->rotation.emplace_back(1, 0, 0, 0);
+    cloud->scale_m.emplace_back(0.2f, 0.2f, 0.2f);
+    cloud->opacity = {0.9f};
+    cloud->color = ShBlock(1, 3);
+    c.preview(cloud);
+    c.progress.expect(options_.steps);
+    for (int i = 0; i < options_.steps; ++i) {
+      c.progress.step();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    writeFileAtomically(c.folder / "slept.txt", "well");
+  }
+};
+
+class Studio : public ::testing::Test {
+ protected:
+  Studio() : window(services(), MainWindow::Layout::Fresh) {
+    fs::create_directory(folder / "capture");
+    window.show();
+  }
+  static StudioServices services() {
+    auto setup = std::make_shared<PipelineSetup>();
+    setup->stages.add([] { return std::make_unique<SleepStage>(); });
+    setup->presets = "";
+    setup->open_capture = sphereCapture;
+    const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
+    return {
+        .pipeline = setup, .job_device = device, .view_device = device, .make_sample = {}, .version = "test"};
+  }
+  bool openCapture() {
+    window.open(folder / "capture");
+    return waitFor([&] { return window.model().isOpen() && window.settled(); });
+  }
+
+  TempDir folder;
+  MainWindow window;
+};
+
+TEST_F(Studio, OpensACaptureAsAProjectThatIsOnDiskOnlyOnceItIsRun) {
+  ASSERT_TRUE(openCapture());
+  EXPECT_EQ(window.model().project().folder(), folder / "capture.beam");
+  EXPECT_FALSE(fs::exists(folder / "capture.beam"));
+  EXPECT_TRUE(fs::is_empty(folder / "capture")) << "nothing is written into a capture";
+  ASSERT_EQ(window.model().stages().size(), 1u);
+  EXPECT_EQ(window.model().stages()[0].state, StepState::Pending);
+}
+
+TEST_F(Studio, SaysWhatIsWrongWithAPathThatCannotBeOpened) {
+  window.open(folder / "nowhere");
+  ASSERT_TRUE(waitFor([&] { return window.message().isVisible(); }));
+  EXPECT_TRUE(window.message().text().contains("nowhere"));
+  EXPECT_FALSE(window.model().isOpen());
+}
+
+TEST_F(Studio, RunsAStageInTheBackgroundWithPreviewAndProgress) {
+  ASSERT_TRUE(openCapture());
+  window.model().set("surface.steps", FieldValue(300));
+  window.run();
+  EXPECT_TRUE(window.job().busy());
+  EXPECT_TRUE(waitFor([&] { return window.runBar().text().contains("300"); }))
+      << window.runBar().text().toStdString();
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
+  EXPECT_TRUE(window.runBar().text().startsWith("Done")) << window.runBar().text().toStdString();
+  EXPECT_EQ(window.model().stages()[0].state, StepState::Done);
+  window.run();
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }));
+  EXPECT_TRUE(window.runBar().text().contains("1 were there already"))
+      << window.runBar().text().toStdString();
+}
+
+TEST_F(Studio, CancelsARunAndStaysUsable) {
+  ASSERT_TRUE(openCapture());
+  bool preview = false;
+  QObject::connect(&window.job(), &JobBridge::previewChanged, &window, [&] { preview = true; });
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return preview; }));
+  window.cancelRun();
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }, 2000));
+  EXPECT_TRUE(window.runBar().text().startsWith("Cancelled")) << window.runBar().text().toStdString();
+  EXPECT_TRUE(waitFor([&] { return window.settled(); }));
+  EXPECT_EQ(window.model().stages()[0].state, StepState::Pending);
+}
+
+TEST_F(Studio, KeepsAnEditedSettingInTheProject) {
+  ASSERT_TRUE(openCapture());
+  ASSERT_TRUE(window.model().save());
+  window.settings().setStage("surface");
+  Q_EMIT window.settings().form().edited("surface.steps", FieldValue(77));
+  EXPECT_TRUE(window.settings().form().isMarkedChanged("surface.steps"));
+  EXPECT_TRUE(waitFor([&] { return !window.model().unsaved(); }));
+  const Project again = Project::open(folder / "capture.beam", window.model().services().pipeline);
+  EXPECT_EQ(again.value("surface.steps"), FieldValue(77));
+  Q_EMIT window.settings().form().resetWanted("surface.steps");
+  EXPECT_FALSE(window.settings().form().isMarkedChanged("surface.steps"));
+}
+
+TEST_F(Studio, ClosesDuringARun) {
+  ASSERT_TRUE(openCapture());
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("of"); }));
+  window.close();
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }, 2000));
+}
+
+TEST(Evaluation, ReadsTheScoresThatEvaluateWroteAndLivesWithoutThem) {
+  const TempDir folder;
+  EXPECT_TRUE(readEvaluation(folder.path()).rows.empty());
+  writeFileAtomically(
+      folder / "evaluation.json",
+      R"({"rgb": {"psnr": 33.456, "ssim": 0.97612, "pictures": 4}, "normal": {"angle_deg": 8.7},
+                          "ao_scaled": {"psnr": 1}, "mesh": {"chamfer_mm": 2.357}})");
+  const Evaluation evaluation = readEvaluation(folder.path());
+  ASSERT_EQ(evaluation.rows.size(), 3u);
+  EXPECT_EQ(evaluation.rows[0].first.toStdString(), "33.46 dB");
+  EXPECT_EQ(evaluation.rows[0].ssim.toStdString(), "0.9761");
+  EXPECT_EQ(evaluation.rows[1].first.toStdString(), "8.70°");
+  EXPECT_EQ(evaluation.rows[2].first.toStdString(), "2.36 mm");
+  writeFileAtomically(folder / "evaluation.json", "{ half");
+  EXPECT_TRUE(readEvaluation(folder.path()).rows.empty());
+}
+
+}  // namespace
+}  // namespace beam
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
+  QApplication application(argc, argv);
+  return RUN_ALL_TESTS();
+}
