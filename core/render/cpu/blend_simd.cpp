@@ -61,16 +61,22 @@ TileCounts forwardTile(RasterState& state, const GaussianBuffers& g, int tile, c
   unsigned live = 0xffff;
   const float tx = static_cast<float>(place.x0) + 0.5f, ty = static_cast<float>(place.y0) + 0.5f;
   const std::uint32_t end = state.tile_start[tile + 1];
-  for (std::uint32_t k = state.tile_start[tile]; k < end && live; ++k) {
+  const bool keeps = !state.met_blocks.empty();
+  std::uint32_t k = state.tile_start[tile];
+  for (; k < end && live; ++k) {
     const std::uint32_t index = state.entries[k].splat;
     const ScreenSplat& s = state.splats[index];
     const float x = s.x - tx, y = s.y - ty;
     __builtin_prefetch(&state.splats[state.entries[std::min(k + 8, end - 1)].splat]);
+    unsigned met = 0;
     for (unsigned blocks = touchedBlocks(s, x, y) & live; blocks; blocks &= blocks - 1) {
       const int b = std::countr_zero(blocks);
       Lanes t = load(transmittance[b]);
       const Lanes before = t;
       BlockResponse r = respond(s, x - 4 * (b & 3), y - 4 * (b >> 2), t);
+      counts.evaluated += 16;
+      if (!any(r.hit)) continue;
+      met |= 1u << b;
       const Lanes w = weigh(r, t);
       store(t, transmittance[b]);
       store(fma(w, Lanes(s.red), load(color[0][b])), color[0][b]);
@@ -92,11 +98,12 @@ TileCounts forwardTile(RasterState& state, const GaussianBuffers& g, int tile, c
           store(fma(w, value, load(extra[e][b])), extra[e][b]);
         }
       }
-      counts.evaluated += 16;
       counts.blended += static_cast<unsigned>(std::popcount(bitsOf(r.hit)));
       if (!any(t > Lanes(0.0f))) live &= ~(1u << b);
     }
+    if (keeps) state.met_blocks[k] = static_cast<std::uint16_t>(met);
   }
+  if (keeps) std::fill(state.met_blocks.begin() + k, state.met_blocks.begin() + end, std::uint16_t{0});
   std::copy_n(&transmittance[0][0], 256, &state.transmittance[static_cast<std::size_t>(tile) * 256]);
   for (int b = 0; b < 16; ++b) {
     const Lanes t = abs(load(transmittance[b])), coverage = Lanes(1.0f) - t;
@@ -178,18 +185,17 @@ void backwardTile(RasterState& state, const GaussianBuffers& g, int tile, const 
   TileUpstream u;
   loadUpstream<kGeometry, kExtra>(state, tile, place, in, u);
   constexpr int kSums = 12 + (kGeometry ? 12 : 0) + (kExtra ? kMaxExtra : 0);
-  unsigned live = 0xffff;
   const float tx = static_cast<float>(place.x0) + 0.5f, ty = static_cast<float>(place.y0) + 0.5f;
   for (std::uint32_t k = begin; k < end; ++k) {
     const TileEntry entry = state.entries[k];
     float* slot = &state.slot_gradients[static_cast<std::size_t>(entry.slot) * state.slot_floats];
-    const ScreenSplat& s = state.splats[entry.splat];
-    const float x = s.x - tx, y = s.y - ty;
-    unsigned blocks = live ? touchedBlocks(s, x, y) & live : 0u;
+    unsigned blocks = state.met_blocks[k];
     if (!blocks) {
       std::fill_n(slot, state.slot_floats, 0.0f);
       continue;
     }
+    const ScreenSplat& s = state.splats[entry.splat];
+    const float x = s.x - tx, y = s.y - ty;
     __builtin_prefetch(&state.splats[state.entries[std::min(k + 8, end - 1)].splat]);
     Lanes sum[kSums];
     for (Lanes& v : sum) v = Lanes(0.0f);
@@ -237,7 +243,6 @@ void backwardTile(RasterState& state, const GaussianBuffers& g, int tile, const 
       const Lanes vx = v * r.dx, vy = v * r.dy;
       sum[3] = sum[3] + v, sum[4] = sum[4] + vx, sum[5] = sum[5] + vy;
       sum[6] = fma(vx, r.dx, sum[6]), sum[7] = fma(vx, r.dy, sum[7]), sum[8] = fma(vy, r.dy, sum[8]);
-      if (!any(t > Lanes(0.0f))) live &= ~(1u << b);
     }
     for (int c = 0; c < state.slot_floats; c += 4) sum4(sum[c], sum[c + 1], sum[c + 2], sum[c + 3], slot + c);
   }

@@ -123,6 +123,7 @@ class CpuRasterizer final : public Rasterizer {
                           &images.normal,
                           &images.extra,
                           {background.x, background.y, background.z}};
+    if (desc().gradients) state_.met_blocks.resize(state_.entries.size());
     parallelFor(tiles(), kTileGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         counts_[t] = blendTileForward(state_, gaussians, static_cast<int>(t), pass);

@@ -73,7 +73,10 @@ struct RasterState {
   std::vector<std::uint32_t> tile_start;  // size tiles + 1
   std::vector<TileEntry> entries;         // by tile, then depth
 
-  // After forward: transmittance of every pixel, negative where the pixel was opaque before its last entry.
+  // After forward: blocks of the entry's tile in which a pixel met it (bit 4 row + column); the backward pass
+  // visits no others. Empty when no backward pass will come.
+  std::vector<std::uint16_t> met_blocks;  // [entry]
+  // Transmittance of every pixel, negative where the pixel was opaque before its last entry.
   AlignedVector<float> transmittance;   // [tile][block][16]
   AlignedVector<float> slot_gradients;  // [slot][slot_floats]
   std::uint64_t pairs_evaluated = 0, pairs_blended = 0;
