@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/optim/anchors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/math/knn.h"
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kGrain = 512;
+
+// `skip`: leave the point itself out.
+Anchors anchored(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m,
+                 bool skip) {
+  const KdTree tree(targets);
+  const std::size_t per_point = std::min<std::size_t>(count, targets.size() - (skip ? 1 : 0));
+  Anchors a{static_cast<int>(per_point), std::vector<std::uint32_t>(points.size() * per_point),
+            std::vector<float>(points.size() * per_point)};
+  parallelFor(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::vector<Neighbor> near = tree.nearest(points[i], static_cast<int>(per_point) + (skip ? 1 : 0));
+      if (skip) std::erase_if(near, [&](const Neighbor& n) { return n.index == i; });
+      double sum = 0;
+      std::vector<double> weight(per_point);
+      for (std::size_t k = 0; k < per_point; ++k) {
+        const double excess = near[k].squared_distance - near[0].squared_distance;
+        sum += weight[k] = std::exp(-excess / (static_cast<double>(length_m) * length_m));
+      }
+      for (std::size_t k = 0; k < per_point; ++k) {
+        a.target[i * per_point + k] = near[k].index;
+        a.weight[i * per_point + k] = static_cast<float>(weight[k] / sum);
+      }
+    }
+  });
+  return a;
+}
+
+}  // namespace
+
+Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m) {
+  if (targets.empty()) throw Error(Error::Kind::Data, "there is no joint to hang the Gaussians on");
+  return anchored(points, targets, count, length_m, false);
+}
+
+Anchors neighborGraph(std::span<const vec3> points, int count, float length_m) {
+  if (points.size() < 2) throw Error(Error::Kind::Data, "a graph of neighbours needs two Gaussians or more");
+  return anchored(points, points, count, length_m, true);
+}
+
+AnchorLists listsOf(const Anchors& anchors, std::size_t targets) {
+  AnchorLists lists{std::vector<std::uint32_t>(targets + 1, 0),
+                    std::vector<std::uint32_t>(anchors.target.size())};
+  for (const std::uint32_t t : anchors.target) ++lists.first[t + 1];
+  for (std::size_t j = 0; j < targets; ++j) lists.first[j + 1] += lists.first[j];
+  std::vector<std::uint32_t> next(lists.first.begin(), lists.first.end() - 1);
+  for (std::size_t s = 0; s < anchors.target.size(); ++s) {
+    lists.slot[next[anchors.target[s]]++] = static_cast<std::uint32_t>(s);
+  }
+  return lists;
+}
+
+}  // namespace beam

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses of a set of Gaussians, and the few weighted neighbours that a Gaussian hangs on: the joint graph, the
+// skin graph and the binding of the skin to the joints are all of this form (methods 3.2, 3.5).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math/types.h"
+
+namespace beam {
+
+// Of joints or skin Gaussians at one moment; both arrays have size() entries.
+struct Pose {
+  std::vector<vec3> position_m;
+  std::vector<quat> rotation;  // world_from_gaussian; read as q / |q|
+
+  std::size_t size() const { return position_m.size(); }
+};
+
+// dL/d(pose); the rotation's gradient is with respect to the stored quaternion, w x y z.
+struct PoseGradient {
+  std::vector<vec3> position;
+  std::vector<vec4> rotation;
+
+  PoseGradient() = default;
+  explicit PoseGradient(std::size_t n) : position(n, vec3(0)), rotation(n, vec4(0)) {}
+};
+
+// Point i hangs on targets [i * per_point, (i + 1) * per_point), nearest first; its weights sum to 1.
+struct Anchors {
+  int per_point = 0;
+  std::vector<std::uint32_t> target;
+  std::vector<float> weight;
+
+  std::size_t points() const { return per_point ? target.size() / static_cast<std::size_t>(per_point) : 0; }
+};
+
+// The same pairs seen from the targets, in ascending order: target j owns slots [first[j], first[j + 1]) of
+// `slot`, each an index into Anchors::target. Sums over it have a fixed order.
+struct AnchorLists {
+  std::vector<std::uint32_t> first, slot;
+};
+
+// The `count` nearest targets of every point with weights exp(-(d^2 - d_min^2) / length^2), normalised
+// (methods 3.2: without d_min a far point divides 0 by 0). Fewer targets than `count`: as many as there are.
+Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m);
+// Likewise of the points among themselves, each without itself. Throws Error{Data} for fewer than 2 points.
+Anchors neighborGraph(std::span<const vec3> points, int count, float length_m);
+
+AnchorLists listsOf(const Anchors& anchors, std::size_t targets);
+
+}  // namespace beam
