@@ -164,7 +164,7 @@ class SurfaceTrainer {
     model_.activate();
     raster_->forward(model_.physical(), view.camera, shDegree(step), background, images_);
     ops_->photometric(images_.color, target_, static_cast<float>(options_.ssim_weight), upstream_.color);
-    maskLoss(view);
+    maskLoss(images_.alpha, view, options_.mask_weight, upstream_.alpha);
     if (geometry) {
       for (Planes* p : {&upstream_.normal, &upstream_.depth, &upstream_.median_depth}) {
         std::fill(p->values.begin(), p->values.end(), 0.0f);
@@ -175,26 +175,15 @@ class SurfaceTrainer {
                  upstream_);
     }
     raster_->backward(upstream_, gradients_);
-    const Regularizers regularizers = geometry
-                                          ? Regularizers{}
-                                          : Regularizers{static_cast<float>(options_.opacity_regularizer),
-                                                         static_cast<float>(options_.scale_regularizer)};
+    const Regularizers regularizers =
+        geometry ? Regularizers{}
+                 : Regularizers{.opacity = static_cast<float>(options_.opacity_regularizer),
+                                .scale = static_cast<float>(options_.scale_regularizer),
+                                .isotropy = static_cast<float>(options_.isotropy_weight),
+                                .size = static_cast<float>(options_.size_weight)};
     const LearningRates r = rates(step);
     model_.step(gradients_, r, shDegree(step), regularizers, adam_step, *ops_);
     if (!geometry) model_.addNoise(static_cast<float>(options_.noise) * r.position_m, options_.seed, step);
-  }
-
-  // mask_weight * mean |A - mask|; its gradient into the alpha plane.
-  void maskLoss(const TrainingView& view) {
-    Planes& d = upstream_.alpha;
-    const std::size_t pixels = images_.alpha.planeSize();
-    if (d.planeSize() != pixels) d = Planes(images_.alpha.width, images_.alpha.height, 1);
-    if (view.mask.empty()) return std::fill(d.values.begin(), d.values.end(), 0.0f);
-    const auto unit = static_cast<float>(options_.mask_weight / static_cast<double>(pixels));
-    for (std::size_t i = 0; i < pixels; ++i) {
-      const float difference = images_.alpha.values[i] - view.mask.pixels[i] / 255.0f;
-      d.values[i] = difference > 0 ? unit : difference < 0 ? -unit : 0.0f;
-    }
   }
 
   // MCMC every `interval` steps; the growth reaches the cap half way through the appearance steps.

@@ -29,6 +29,8 @@ struct FitSurfaceOptions {
   double noise = 5e5;  // MCMC (methods 1.12)
   double opacity_regularizer = 0.01;
   double scale_regularizer = 0.01;
+  double isotropy_weight = 0;  // of joints only (methods 3.2); not settings of Surface
+  double size_weight = 0;
   double normal_weight = 0.03;        // lambda_normal, BEAM 3.1; group "refine"
   double expected_depth_share = 0.4;  // of E_normal (methods 2.7); group "refine"
 };

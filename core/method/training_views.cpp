@@ -2,6 +2,7 @@
 #include "core/method/training_views.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/image/metrics.h"
@@ -90,6 +91,23 @@ void compose(const TrainingView& view, vec3 background, Planes& target) {
       for (int c = 0; c < 3; ++c) target.plane(c)[i] = keep * p[c] + (1 - a) * background[c];
     }
   });
+}
+
+double maskLoss(const Planes& alpha, const TrainingView& view, double weight, Planes& gradient) {
+  const std::size_t pixels = alpha.planeSize();
+  if (gradient.planeSize() != pixels) gradient = Planes(alpha.width, alpha.height, 1);
+  if (view.mask.empty()) {
+    std::fill(gradient.values.begin(), gradient.values.end(), 0.0f);
+    return 0;
+  }
+  const auto unit = static_cast<float>(weight / static_cast<double>(pixels));
+  double sum = 0;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const float difference = alpha.values[i] - view.mask.pixels[i] / 255.0f;
+    gradient.values[i] = difference > 0 ? unit : difference < 0 ? -unit : 0.0f;
+    sum += std::abs(difference);
+  }
+  return sum * weight / static_cast<double>(pixels);
 }
 
 }  // namespace beam

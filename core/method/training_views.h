@@ -24,4 +24,8 @@ std::vector<TrainingView> cropToMasks(std::span<const FrameView> views);
 // else a p + (1 - a) b. `target` is resized.
 void compose(const TrainingView& view, vec3 background, Planes& target);
 
+// weight * mean |A - mask| over the picture; `gradient` (1 plane, resized) receives its gradient. 0 without a
+// mask.
+double maskLoss(const Planes& alpha, const TrainingView& view, double weight, Planes& gradient);
+
 }  // namespace beam

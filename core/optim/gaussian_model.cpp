@@ -101,6 +101,39 @@ void GaussianModel::unbakeFilter() {
   }
 }
 
+void GaussianModel::addShapeGradient(GaussianBuffers& gradients, const Regularizers& regularizers) const {
+  if (regularizers.isotropy == 0 && regularizers.size == 0) return;
+  const double sum = parallelReduce(
+      size(), kGrain, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double part = 0;
+        for (int k = 0; k < 3; ++k) {
+          for (std::size_t i = begin; i < end; ++i) part += std::exp(raw(k)[i]);
+        }
+        return part;
+      },
+      [](double a, double b) { return a + b; });
+  const auto mean = static_cast<float>(sum / (3.0 * static_cast<double>(size())));
+  const float per_ratio = regularizers.isotropy / static_cast<float>(size());
+  parallelFor(size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      int high = 0, low = 0;
+      for (int k = 1; k < 3; ++k) {
+        if (raw(k)[i] > raw(high)[i]) high = k;
+        if (raw(k)[i] < raw(low)[i]) low = k;
+      }
+      const float largest = std::exp(raw(high)[i]), ratio = largest / std::exp(raw(low)[i]);
+      float& d_high = gradients.plane(L::kScale + high)[i];
+      if (ratio > 4) {
+        d_high += per_ratio * ratio;
+        gradients.plane(L::kScale + low)[i] -= per_ratio * ratio;
+      }
+      if (largest > 5 * mean) d_high += regularizers.size * largest;
+      if (largest < 0.2f * mean) d_high -= regularizers.size * largest;
+    }
+  });
+}
+
 void GaussianModel::step(GaussianBuffers& gradients, const LearningRates& rates, int sh_degree,
                          const Regularizers& regularizers, int step, TrainingOps& ops) {
   const float per_opacity = regularizers.opacity / static_cast<float>(size());
@@ -120,6 +153,7 @@ void GaussianModel::step(GaussianBuffers& gradients, const LearningRates& rates,
       d_opacity = (d_opacity * keep + per_opacity) * o * (1 - o);
     }
   });
+  addShapeGradient(gradients, regularizers);
   std::array<AdamPlane, L::kExtra> planes{};
   for (int p = 0; p < L::kExtra; ++p) {
     planes[p].learning_rate = p < L::kRotation                      ? rates.position_m

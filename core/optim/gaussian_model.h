@@ -21,10 +21,14 @@ struct LearningRates {
   float color_rest = 1.25e-4f;
 };
 
-// Weights of MCMC's regularisers, means over Gaussians (methods 1.12).
+// Weights of MCMC's regularisers, means over Gaussians (methods 1.12), and of the shape of joints (methods
+// 3.2): isotropy mean_i max(s_max / s_min, 4), size sum_i relu(s_max - 5 m) + relu(m / 5 - s_max) in metres,
+// m the mean of all scales.
 struct Regularizers {
   float opacity = 0;
   float scale = 0;
+  float isotropy = 0;
+  float size = 0;
 };
 
 class GaussianModel {
@@ -65,6 +69,8 @@ class GaussianModel {
 
  private:
   void resize(std::size_t count);
+  // dE/d(log scale) of the shape terms, into chained gradients.
+  void addShapeGradient(GaussianBuffers& gradients, const Regularizers& regularizers) const;
   float* raw(int k) { return raw_.data() + values_.stride * k; }  // log scale 0-2, logit opacity 3
   const float* raw(int k) const { return raw_.data() + values_.stride * k; }
 

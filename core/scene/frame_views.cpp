@@ -28,6 +28,12 @@ Image<T> shrink(const Image<T>& in, int factor) {
 
 }  // namespace
 
+FrameView shrunk(const FrameView& view, int factor) {
+  if (factor <= 1) return view;
+  return {view.name, scaledDown(view.camera, factor), shrink<u8vec3, ivec3>(view.photo, factor),
+          view.mask.empty() ? Image<std::uint8_t>() : shrink<std::uint8_t, int>(view.mask, factor)};
+}
+
 std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
                                       int downscale) {
   std::vector<FrameView> loaded(capture.views.size());
@@ -37,14 +43,9 @@ std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex fram
     const ViewIndex index{static_cast<std::int32_t>(i)};
     if (view.split != split || !capture.source->has(index, frame)) return;
     try {
-      FrameView v{view.name, view.camera, capture.source->photo(index, frame),
-                  capture.source->mask(index, frame)};
-      if (downscale > 1) {
-        v.camera = scaledDown(v.camera, downscale);
-        v.photo = shrink<u8vec3, ivec3>(v.photo, downscale);
-        if (!v.mask.empty()) v.mask = shrink<std::uint8_t, int>(v.mask, downscale);
-      }
-      loaded[i] = std::move(v);
+      const FrameView v{view.name, view.camera, capture.source->photo(index, frame),
+                        capture.source->mask(index, frame)};
+      loaded[i] = shrunk(v, downscale);
     } catch (const Error& e) {
       problem[i] = e.what();
     }

@@ -22,4 +22,7 @@ struct FrameView {
 std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
                                       int downscale = 1);
 
+// The view as a camera of `factor` times fewer pixels a side would have seen it (area average).
+FrameView shrunk(const FrameView& view, int factor);
+
 }  // namespace beam

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/optim/mcmc.h"
@@ -125,6 +126,42 @@ TEST(GaussianModel, ChainsGradientsToLogScaleAndLogitAsCentralDifferencesDo) {
   };
   const double expected = (score(moved(h), 1.0f, cameras) - score(moved(-h), 1.0f, cameras)) / (2 * h);
   EXPECT_NEAR(ops.seen.plane(L::kOpacity)[1], expected, 2e-4);
+}
+
+// The shape terms as their header states them, with the mean scale `m` held: it passes no gradient.
+double shapeEnergy(const GaussianCloud& cloud, const Regularizers& r, double m) {
+  double isotropy = 0, size = 0;
+  for (const vec3& s : cloud.scale_m) {
+    const double high = std::max({s.x, s.y, s.z}), low = std::min({s.x, s.y, s.z});
+    isotropy += std::max(high / low, 4.0) / static_cast<double>(cloud.size());
+    size += std::max(0.0, high - 5 * m) + std::max(0.0, m / 5 - high);
+  }
+  return r.isotropy * isotropy + r.size * size;
+}
+
+TEST(GaussianModel, ShapeTermsHaveTheGradientOfTheirEnergies) {
+  GaussianCloud c = someCloud(12);
+  c.scale_m[3] = vec3(0.0003f, 0.0002f, 0.00025f);  // under a fifth of the mean
+  c.scale_m[5] = vec3(0.004f, 0.05f, 0.005f);       // over five means, and long
+  double m = 0;
+  for (const vec3& s : c.scale_m) m += (s.x + s.y + s.z) / 36.0;
+  const Regularizers shape{.isotropy = 0.3f, .size = 2};
+  GaussianModel model(c);
+  GaussianBuffers gradient(c.size());
+  RecordingOps ops;
+  model.activate();
+  model.step(gradient, {}, 3, shape, 1, ops);
+  const double h = 1e-3;
+  for (const std::size_t i : {std::size_t{1}, std::size_t{3}, std::size_t{5}}) {
+    for (int k = 0; k < 3; ++k) {
+      GaussianCloud up = c, down = c;
+      up.scale_m[i][k] *= static_cast<float>(std::exp(h));
+      down.scale_m[i][k] *= static_cast<float>(std::exp(-h));
+      const double expected = (shapeEnergy(up, shape, m) - shapeEnergy(down, shape, m)) / (2 * h);
+      EXPECT_NEAR(ops.seen.plane(L::kScale + k)[i], expected, 1e-3 * std::abs(expected) + 1e-6)
+          << "Gaussian " << i << " axis " << k;
+    }
+  }
 }
 
 TEST(Relocation, OneCopyChangesNothing) {

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/track_joints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/math/knn.h"
+#include "core/method/fit_surface.h"
+#include "core/method/joint_warp.h"
+#include "core/method/training_views.h"
+#include "core/optim/gaussian_model.h"
+#include "core/optim/pose_model.h"
+#include "core/optim/rigid_energy.h"
+#include "core/optim/schedule.h"
+
+namespace beam {
+namespace {
+
+constexpr int kNeighbors = 8;        // of the joint graph (methods 3.2)
+constexpr int kFewestNodes = 64;     // of a coarse level
+constexpr float kLevelDecay = 0.1f;  // learning rates of a level end at this share
+
+// Indices in the order of farthest-point sampling from the first: every beginning of it covers the points
+// evenly.
+std::vector<std::uint32_t> spreadOrder(std::span<const vec3> points, std::size_t count) {
+  std::vector<float> distance(points.size(), std::numeric_limits<float>::max());
+  std::vector<std::uint32_t> order;
+  std::uint32_t next = 0;
+  while (order.size() < std::min(count, points.size())) {
+    order.push_back(next);
+    float farthest = -1;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      const vec3 d = points[i] - points[order.back()];
+      distance[i] = std::min(distance[i], glm::dot(d, d));
+      if (distance[i] > farthest) farthest = distance[i], next = i;
+    }
+  }
+  return order;
+}
+
+Pose chosen(const Pose& pose, std::span<const std::uint32_t> indices) {
+  Pose out;
+  for (const std::uint32_t i : indices) {
+    out.position_m.push_back(pose.position_m[i]);
+    out.rotation.push_back(pose.rotation[i]);
+  }
+  return out;
+}
+
+// The joints drawn at one level, on its pictures.
+class LevelView {
+ public:
+  LevelView(std::span<const FrameView> views, int level, const GaussianCloud& joints, double mask_weight,
+            ComputeDevice& device)
+      : ops_(device.newTrainingOps()), mask_weight_(mask_weight) {
+    std::vector<FrameView> small;
+    for (const FrameView& v : views) small.push_back(shrunk(v, 1 << level));
+    views_ = cropToMasks(small);
+    std::vector<Camera> cameras;
+    for (const TrainingView& v : views_) cameras.push_back(v.camera);
+    GaussianModel model(joints);
+    model.updateFilter(cameras, 1);
+    model.activate();
+    drawn_ = model.physical();
+    const RasterDesc desc{.width = cameras[0].width, .height = cameras[0].height, .gradients = true};
+    raster_ = device.newRasterizer(desc);
+    for (const Camera& c : cameras) {
+      const double depth = glm::length(centerOf(c) - dvec3(centroid(joints.position_m)));
+      pixel_m_ += depth / c.intrinsics.fx / static_cast<double>(cameras.size());
+    }
+  }
+
+  std::size_t size() const { return views_.size(); }
+  double pixelSize() const { return pixel_m_; }  // metres at the subject
+  TrainingOps& ops() { return *ops_; }
+
+  // The loss of one view; adds its gradient when one is asked for.
+  double loss(const Pose& pose, std::size_t view, vec3 background, PoseGradient* gradient) {
+    const TrainingView& v = views_[view];
+    if (v.mask.empty()) background = vec3(0);
+    setPose(drawn_, pose);
+    compose(v, background, target_);
+    raster_->forward(drawn_, v.camera, 3, background, images_);
+    const double l1 = ops_->photometric(images_.color, target_, 0, upstream_.color).total;
+    const double mask = maskLoss(images_.alpha, v, mask_weight_, upstream_.alpha);
+    if (gradient) {
+      raster_->backward(upstream_, gradients_);
+      addPoseGradient(gradients_, *gradient);
+    }
+    return l1 + mask;
+  }
+
+  // Mean over all views on black.
+  double lossOfAll(const Pose& pose) {
+    double sum = 0;
+    for (std::size_t v = 0; v < size(); ++v) sum += loss(pose, v, vec3(0), nullptr);
+    return sum / static_cast<double>(size());
+  }
+
+ private:
+  static vec3 centroid(std::span<const vec3> points) {
+    dvec3 sum(0);
+    for (const vec3& p : points) sum += dvec3(p);
+    return vec3(sum / static_cast<double>(points.size()));
+  }
+
+  std::unique_ptr<TrainingOps> ops_;
+  double mask_weight_;
+  std::vector<TrainingView> views_;
+  GaussianBuffers drawn_, gradients_;
+  std::unique_ptr<Rasterizer> raster_;
+  double pixel_m_ = 0;
+  Planes target_;
+  RasterImages images_, upstream_;
+};
+
+class JointTracker {
+ public:
+  JointTracker(std::span<const FrameView> views, const JointHistory& history,
+               const TrackJointsOptions& options, ComputeDevice& device)
+      : views_(views),
+        history_(history),
+        options_(options),
+        device_(device),
+        previous_(poseOf(history.previous)),
+        pose_(previous_) {
+    const std::size_t coarse = nodesOf(options.levels > 0 ? 1 : 0);
+    if (options.levels > 0) order_ = spreadOrder(history.first.position_m, coarse);
+  }
+
+  TrackedJoints run(Progress& progress, const CloudPreview& preview) {
+    progress.expect(options_.iterations);
+    TrackedJoints result;
+    for (int level = options_.levels; level >= 0; --level) {
+      LevelView view(views_, level, history_.previous, options_.mask_weight, device_);
+      if (level == options_.levels) predict(view);
+      const double rigid = level > 0 ? moveNodes(level, view, progress) : moveJoints(view, progress);
+      if (preview) preview(std::make_shared<GaussianCloud>(posed()));
+      if (level > 0) continue;
+      result.residual = view.lossOfAll(pose_);
+      result.rigid = rigid;
+    }
+    result.joints = posed();
+    return result;
+  }
+
+ private:
+  std::size_t nodesOf(int level) const {
+    const std::size_t all = history_.first.size();
+    return std::min(all, std::max<std::size_t>(kFewestNodes, all >> (2 * level)));
+  }
+
+  int stepsOf(int level) const {
+    const int coarse = options_.iterations / (2 * (options_.levels + 1));
+    return level > 0 ? coarse : options_.iterations - coarse * options_.levels;
+  }
+
+  GaussianCloud posed() const {
+    GaussianCloud cloud = history_.previous;
+    setPose(cloud, pose_);
+    return cloud;
+  }
+
+  void predict(LevelView& view) {
+    if (history_.before_m.empty()) return;
+    Pose predicted = previous_;
+    for (std::size_t i = 0; i < predicted.size(); ++i)
+      predicted.position_m[i] += previous_.position_m[i] - history_.before_m[i];
+    if (view.lossOfAll(predicted) < view.lossOfAll(pose_)) pose_ = std::move(predicted);
+  }
+
+  Anchors graphOf(std::span<const vec3> at_rest) const {
+    return neighborGraph(at_rest, kNeighbors,
+                         static_cast<float>(options_.rigid_spacings * meanSpacing(at_rest)));
+  }
+
+  double moveNodes(int level, LevelView& view, Progress& progress) {
+    const std::span<const std::uint32_t> nodes(order_.data(), nodesOf(level));
+    const Pose rest = chosen(poseOf(history_.first), nodes), start = chosen(pose_, nodes);
+    const float reach = static_cast<float>(options_.rigid_spacings * meanSpacing(rest.position_m));
+    const JointWarp warp(pose_, start,
+                         anchorTo(history_.first.position_m, rest.position_m, kNeighbors, reach));
+    PoseModel model(start);
+    const Pose before = chosen(previous_, nodes);
+    const double rigid = descend(level, graphOf(rest.position_m), before, model, view, progress, &warp);
+    pose_ = warp.skin(model.pose());
+    return rigid;
+  }
+
+  double moveJoints(LevelView& view, Progress& progress) {
+    PoseModel model(pose_);
+    const double rigid =
+        descend(0, graphOf(history_.first.position_m), previous_, model, view, progress, nullptr);
+    pose_ = model.pose();
+    return rigid;
+  }
+
+  // Returns E_rigid at the end. Without `warp` the model's pose is that of the joints.
+  double descend(int level, const Anchors& graph, const Pose& before, PoseModel& model, LevelView& view,
+                 Progress& progress, const JointWarp* warp) {
+    const AnchorLists lists = listsOf(graph, before.size());
+    const int steps = stepsOf(level);
+    const std::size_t batch = std::min<std::size_t>(view.size(), std::size_t{1} << (2 * std::min(level, 4)));
+    for (int step = 0; step < steps; ++step) {
+      progress.step();
+      const Pose& pose = model.pose();
+      const Pose joints = warp ? warp->skin(pose) : pose;
+      PoseGradient of_joints(joints.size()), of_model(pose.size());
+      for (std::size_t b = 0; b < batch; ++b) {
+        const int at = step * static_cast<int>(batch) + static_cast<int>(b);
+        const RandomStream random(options_.seed, at, 0x7acc0u + level);
+        view.loss(joints, viewOfStep(at, view.size(), options_.seed),
+                  vec3(random.uniform(0), random.uniform(1), random.uniform(2)), &of_joints);
+      }
+      if (warp) {
+        warp->backward(pose, of_joints, of_model);
+      } else {
+        of_model = std::move(of_joints);
+      }
+      const auto n = static_cast<float>(batch);  // the photometric gradient is a sum over the batch
+      rigidEnergy(graph, lists, before, pose, static_cast<float>(options_.rigid_weight) * n, of_model);
+      const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step, steps));
+      model.step(of_model, static_cast<float>(options_.position_rate * view.pixelSize()) * decay,
+                 static_cast<float>(options_.rotation_rate) * static_cast<float>(1 << level) * decay,
+                 step + 1, view.ops());
+    }
+    PoseGradient ignored(before.size());
+    return rigidEnergy(graph, lists, before, model.pose(), 0, ignored);
+  }
+
+  std::span<const FrameView> views_;
+  const JointHistory& history_;
+  const TrackJointsOptions& options_;
+  ComputeDevice& device_;
+  std::vector<std::uint32_t> order_;  // nodes of the coarse levels
+  Pose previous_, pose_;
+};
+
+}  // namespace
+
+double meanSpacing(std::span<const vec3> points) {
+  const KdTree tree(points);
+  const double sum = parallelReduce(
+      points.size(), 1024, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double s = 0;
+        for (std::size_t i = begin; i < end; ++i)
+          s += std::sqrt(static_cast<double>(tree.nearest(points[i], 2).back().squared_distance));
+        return s;
+      },
+      [](double a, double b) { return a + b; });
+  return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
+}
+
+GaussianCloud fitFirstJoints(std::span<const FrameView> views, const PointCloud& seeds,
+                             const TrackJointsOptions& options, ComputeDevice& device, Progress& progress,
+                             const CloudPreview& preview) {
+  FitSurfaceOptions fit;
+  fit.iterations = options.first_iterations;
+  fit.refine_fraction = 0;
+  fit.cap = options.joints;
+  fit.seed = options.seed;
+  fit.mask_weight = options.mask_weight;
+  fit.isotropy_weight = options.isotropy_weight;
+  fit.size_weight = options.size_weight;
+  return fitAppearance(views, seeds, fit, device, progress, preview);
+}
+
+TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& history,
+                          const TrackJointsOptions& options, ComputeDevice& device, Progress& progress,
+                          const CloudPreview& preview) {
+  return JointTracker(views, history, options, device).run(progress, preview);
+}
+
+void describe(Fields& f, TrackJointsOptions& o) {
+  f.field({.name = "joints",
+           .label = "Joints",
+           .help = "Joint Gaussians that carry the motion (BEAM 3.1: about 15,000).",
+           .min = 100,
+           .max = 200000},
+          o.joints);
+  f.field({.name = "first_iterations",
+           .label = "Iterations, first frame",
+           .help = "Optimiser steps that fit the joints to the first frame of a take.",
+           .min = 10,
+           .max = 1e6},
+          o.first_iterations);
+  f.field({.name = "iterations",
+           .label = "Iterations, later frames",
+           .help = "Optimiser steps that follow the joints into the next frame, over all levels.",
+           .min = 2,
+           .max = 1e6},
+          o.iterations);
+  f.field({.name = "levels",
+           .label = "Coarse levels",
+           .help = "Levels before the full pictures, each of half the size: more of them catch faster limbs.",
+           .min = 0,
+           .max = 6},
+          o.levels);
+  f.field({.name = "rigid_weight",
+           .label = "Rigidity",
+           .help = "lambda of E_rigid (BEAM eq. 9: 0.05).",
+           .min = 0,
+           .max = 100},
+          o.rigid_weight);
+  f.field({.name = "rigid_spacings",
+           .label = "Reach of the graph",
+           .help = "Length of the graph's weights in spacings of the joints (0.02 m for 15,000).",
+           .min = 0.1,
+           .max = 100,
+           .advanced = true},
+          o.rigid_spacings);
+  f.field({.name = "mask_weight",
+           .label = "Mask weight",
+           .help = "Pull of the coverage towards the mask; 0 is off.",
+           .min = 0,
+           .max = 10,
+           .advanced = true},
+          o.mask_weight);
+  f.field({.name = "position_rate",
+           .label = "Position rate",
+           .help = "First learning rate of positions, in pixels of the level.",
+           .min = 0,
+           .max = 10,
+           .advanced = true},
+          o.position_rate);
+  f.field({.name = "rotation_rate",
+           .label = "Rotation rate",
+           .help = "First learning rate of rotations, radians; doubles with every coarser level.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.rotation_rate);
+  f.field({.name = "isotropy_weight",
+           .label = "Isotropy",
+           .help = "Against joints more than four times longer than thick (methods 3.2).",
+           .min = 0,
+           .max = 10,
+           .advanced = true},
+          o.isotropy_weight);
+  f.field({.name = "size_weight",
+           .label = "Equal sizes",
+           .help = "Against joints over five times or under a fifth of the mean size (methods 3.2).",
+           .min = 0,
+           .max = 100,
+           .advanced = true},
+          o.size_weight);
+  f.field({.name = "seed",
+           .label = "Seed",
+           .help = "Of all random numbers.",
+           .min = 0,
+           .max = 1e9,
+           .advanced = true},
+          o.seed);
+}
+
+}  // namespace beam
