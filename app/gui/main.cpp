@@ -28,7 +28,7 @@ int runStudio(QApplication& application) {
   } catch (const beam::Error& e) {
     return report(e, false);
   }
-  const bool person = arguments.screenshot.isEmpty();
+  const bool person = arguments.screenshot.isEmpty() && QGuiApplication::platformName() != "offscreen";
   try {
     beam::requireOpenGl();
     const beam::Services services = beam::makeServices();
@@ -51,9 +51,19 @@ int runStudio(QApplication& application) {
   }
 }
 
+// Qt aborts the process when it finds no display; offscreen, --help and --version still answer, and all else
+// ends in requireOpenGl's message.
+void surviveWithoutDisplay() {
+#ifdef Q_OS_LINUX
+  const bool display = qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
+  if (!display && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", "offscreen");
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  surviveWithoutDisplay();
   QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
   QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
   QApplication application(argc, argv);
