@@ -56,7 +56,8 @@ void describe(Fields& f, ExtractMeshOptions& o) {
 
 Mesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> cameras,
                  const ExtractMeshOptions& options, ComputeDevice& device, Progress& progress) {
-  progress.expect(static_cast<std::int64_t>(cameras.size()) + 1);
+  Progress depth = progress.part(0.5, "depth of the views");
+  depth.expect(static_cast<std::int64_t>(cameras.size()));
   const GaussianBuffers buffers = toBuffers(cloud);
   std::vector<DepthView> views;
   std::unique_ptr<Rasterizer> raster;
@@ -67,13 +68,12 @@ Mesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> cameras,
     RasterImages images;
     raster->forward(buffers, c, 0, vec3(0), images);
     views.push_back(depthView(images, c));
-    progress.step();
+    depth.step();
   }
   const TsdfOptions tsdf{static_cast<float>(options.voxel_m),
                          static_cast<float>(options.voxel_m * options.truncation_voxels)};
-  const Mesh mesh = keepLargeComponents(fuseDepth(views, tsdf), kSmallestComponent);
-  progress.step();
-  return mesh;
+  Progress fusing = progress.part(0.5, "fusing depth");
+  return keepLargeComponents(fuseDepth(views, tsdf, fusing), kSmallestComponent);
 }
 
 }  // namespace beam

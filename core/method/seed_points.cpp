@@ -63,7 +63,7 @@ PointCloud seedPoints(std::span<const FrameView> views, const PointCloud& seed_p
                       Progress& progress) {
   progress.expect(2);
   const VisualHull hull(views);
-  const std::vector<vec3> surface = hull.surfaceCells(kHullCell_m);
+  const std::vector<vec3> surface = hull.surfaceCells(kHullCell_m, progress);
   progress.step();
   PointCloud out;
   if (surface.empty()) {

@@ -98,8 +98,9 @@ class Surface {
   }
 
   // Marching tetrahedra: six around the diagonal of every cell, shared edges give shared vertices.
-  Mesh extract() {
+  Mesh extract(Progress& progress) {
     for (const Block& block : blocks_) {
+      progress.step();
       for (int i = 0; i < kBlockVoxels; ++i) {
         cell(block.index * kBlock + ivec3(i % kBlock, i / kBlock % kBlock, i / (kBlock * kBlock)));
       }
@@ -195,16 +196,19 @@ class Surface {
 
 }  // namespace
 
-Mesh fuseDepth(std::span<const DepthView> views, const TsdfOptions& options) {
+Mesh fuseDepth(std::span<const DepthView> views, const TsdfOptions& options, Progress& progress) {
   const std::vector<std::uint64_t> keys = touchedBlocks(views, options);
   std::vector<Block> blocks(keys.size());
+  progress.expect(static_cast<std::int64_t>(blocks.size()));
+  progress.check();
   parallelFor(keys.size(), 16, [&](std::size_t begin, std::size_t end) {
+    if (progress.stopRequested()) return;
     for (std::size_t b = begin; b < end; ++b) {
       blocks[b].index = blockOf(keys[b]);
       integrate(blocks[b], views, options);
     }
   });
-  return Surface(blocks, options.voxel_m).extract();
+  return Surface(blocks, options.voxel_m).extract(progress);
 }
 
 Mesh keepLargeComponents(const Mesh& mesh, double share) {

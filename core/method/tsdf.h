@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/image/image.h"
 #include "core/scene/camera.h"
 #include "core/scene/mesh.h"
@@ -26,7 +27,7 @@ struct TsdfOptions {
 
 // Blocks are those that a depth sample falls near; work is parallel over blocks, views in order: the same for
 // any number of threads.
-Mesh fuseDepth(std::span<const DepthView> views, const TsdfOptions& options);
+Mesh fuseDepth(std::span<const DepthView> views, const TsdfOptions& options, Progress& progress);
 
 // Keeps components with at least `share` of the largest one's triangles; drops unused vertices.
 Mesh keepLargeComponents(const Mesh& mesh, double share);

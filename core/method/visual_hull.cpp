@@ -101,7 +101,7 @@ void VisualHull::boundingCube(dvec3& center, double& half) const {
   half = nearest * 0.75;
 }
 
-std::vector<vec3> VisualHull::surfaceCells(float cell_m) const {
+std::vector<vec3> VisualHull::surfaceCells(float cell_m, const Progress& progress) const {
   if (views_.empty()) return {};
   dvec3 origin;
   double half = 0;
@@ -111,6 +111,7 @@ std::vector<vec3> VisualHull::surfaceCells(float cell_m) const {
     half /= 2;
     std::vector<std::vector<dvec3>> children(cells.size());
     parallelFor(cells.size(), 256, [&](std::size_t begin, std::size_t end) {
+      if (progress.stopRequested()) return;
       for (std::size_t i = begin; i < end; ++i) {
         for (int k = 0; k < 8; ++k) {
           const dvec3 c = cells[i] + half * dvec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
@@ -121,10 +122,12 @@ std::vector<vec3> VisualHull::surfaceCells(float cell_m) const {
     std::vector<dvec3> next;
     for (const std::vector<dvec3>& c : children) next.insert(next.end(), c.begin(), c.end());
     cells = std::move(next);
+    progress.check();
   }
   // Of the mixed leaves the surface passes through those whose corners disagree.
   std::vector<std::uint8_t> crossed(cells.size(), 0);
   parallelFor(cells.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    if (progress.stopRequested()) return;
     for (std::size_t i = begin; i < end; ++i) {
       int inside = 0;
       for (int k = 0; k < 8; ++k) {
@@ -133,6 +136,7 @@ std::vector<vec3> VisualHull::surfaceCells(float cell_m) const {
       crossed[i] = inside > 0 && inside < 8;
     }
   });
+  progress.check();
   std::vector<vec3> surface;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (crossed[i]) surface.emplace_back(cells[i]);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/scene/frame_views.h"
 
 namespace beam {
@@ -24,7 +25,7 @@ class VisualHull {
 
   // Centres of the cells of about `cell_m` that the hull's surface passes through, in a fixed order. Empty
   // when no view has a mask or the hull is empty.
-  std::vector<vec3> surfaceCells(float cell_m) const;
+  std::vector<vec3> surfaceCells(float cell_m, const Progress& progress) const;
 
  private:
   struct MaskView {

@@ -34,14 +34,14 @@ FrameView shrunk(const FrameView& view, int factor) {
           view.mask.empty() ? Image<std::uint8_t>() : shrink<std::uint8_t, int>(view.mask, factor)};
 }
 
-std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
-                                      int downscale) {
+std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split, int downscale,
+                                      const Progress& progress) {
   std::vector<FrameView> loaded(capture.views.size());
   std::vector<std::string> problem(capture.views.size());
   parallelFor(capture.views.size(), 1, [&](std::size_t i, std::size_t) {
     const View& view = capture.views[i];
     const ViewIndex index{static_cast<std::int32_t>(i)};
-    if (view.split != split || !capture.source->has(index, frame)) return;
+    if (progress.stopRequested() || view.split != split || !capture.source->has(index, frame)) return;
     try {
       const FrameView v{view.name, view.camera, capture.source->photo(index, frame),
                         capture.source->mask(index, frame)};
@@ -50,6 +50,7 @@ std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex fram
       problem[i] = e.what();
     }
   });
+  progress.check();
   std::vector<FrameView> views;
   for (std::size_t i = 0; i < loaded.size(); ++i) {
     if (!problem[i].empty())

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/scene/capture.h"
 
 namespace beam {
@@ -19,8 +20,8 @@ struct FrameView {
 // The views of `split` that hold a readable picture of the frame; a picture that cannot be read is left out
 // with a warning. Pictures and cameras are scaled down by `downscale` (area average). Throws Error{Data} when
 // fewer than two views remain.
-std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
-                                      int downscale = 1);
+std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split, int downscale,
+                                      const Progress& progress);
 
 // The view as a camera of `factor` times fewer pixels a side would have seen it (area average).
 FrameView shrunk(const FrameView& view, int factor);

@@ -9,7 +9,7 @@ int downscaleOf(const StepContext& context) { return std::get<int>(context.setti
 }  // namespace
 
 std::vector<FrameView> trainingViews(const StepContext& context) {
-  return loadFrameViews(context.capture, context.frame, Split::Train, downscaleOf(context));
+  return loadFrameViews(context.capture, context.frame, Split::Train, downscaleOf(context), context.progress);
 }
 
 std::vector<Camera> trainingCameras(const StepContext& context) {

@@ -38,7 +38,8 @@ std::vector<DepthView> depthOfASphere(const SphereCapture& s) {
 TEST(Tsdf, FusesASphereWithinAVoxelAndFacesOutward) {
   const SphereCapture s{.cameras = 14, .size_px = 96};
   const TsdfOptions o{.voxel_m = 0.015f, .truncation_m = 0.06f};
-  const Mesh mesh = keepLargeComponents(fuseDepth(depthOfASphere(s), o), 0.01);
+  Progress progress;
+  const Mesh mesh = keepLargeComponents(fuseDepth(depthOfASphere(s), o, progress), 0.01);
   ASSERT_GT(mesh.triangles.size(), 1000u);
   double error = 0;
   std::size_t outward = 0;

@@ -28,7 +28,7 @@ TEST(VisualHull, OfASphereHoldsItsInsideAndNothingFarOutside) {
 TEST(VisualHull, SurfaceCellsLieNearTheSphere) {
   const SphereCapture s{.cameras = 16};
   const auto views = photographs(s);
-  const std::vector<vec3> cells = VisualHull(views).surfaceCells(0.02f);
+  const std::vector<vec3> cells = VisualHull(views).surfaceCells(0.02f, Progress());
   ASSERT_GT(cells.size(), 500u);
   for (const vec3& c : cells) {
     const float r = glm::length(c - s.center);
@@ -40,7 +40,7 @@ TEST(VisualHull, SurfaceCellsLieNearTheSphere) {
 TEST(VisualHull, WithoutMasksHasNoSurface) {
   auto views = photographs({});
   for (FrameView& v : views) v.mask = {};
-  EXPECT_TRUE(VisualHull(views).surfaceCells(0.02f).empty());
+  EXPECT_TRUE(VisualHull(views).surfaceCells(0.02f, Progress()).empty());
 }
 
 TEST(SeedPoints, ComeFromTheHullInTheSameOrderForAnyThreadCount) {
