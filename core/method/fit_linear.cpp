@@ -117,10 +117,13 @@ class NormalEquations {
              [&](std::size_t i, const std::array<float, kShCount>& b, vec4 s) {
                for (int k = 0; k < kShCount; ++k) diagonal_[i * kShCount + k] += b[k] * b[k] * s;
              });
+    progress.check();
     forViews([&](const ViewEquations& v, std::vector<vec4>& out) { project(v, out, Row::Importance); },
              [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { row_sum_[i] += s; });
+    progress.check();
     forViews([&](const ViewEquations& v, std::vector<vec4>& out) { project(v, out, Row::Seen); },
              [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { coverage_[i] += s; });
+    progress.check();
     forViews([&](const ViewEquations& v, std::vector<vec4>& out) { project(v, out, Row::Target); },
              [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { mean_[i] += s; });
     typical_ = meanImportance();
