@@ -49,11 +49,11 @@ Digest InputDigests::calibration(const CaptureSet& capture) const {
   return digestOf(calibrationText(capture));
 }
 
-Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame) const {
+Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame, Split split) const {
   std::string text;
   for (std::size_t i = 0; i < capture.views.size(); ++i) {
     const ViewIndex view{static_cast<std::int32_t>(i)};
-    if (capture.views[i].split != Split::Train || !capture.source->has(view, frame)) continue;
+    if (capture.views[i].split != split || !capture.source->has(view, frame)) continue;
     text += fmt::format("view {}:{}", capture.views[i].name.size(), capture.views[i].name);
     const std::vector<std::string> names = capture.source->files(view, frame);
     for (const std::string& name : names) text += fmt::format(" {}", file(name).hex());

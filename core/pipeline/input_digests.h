@@ -21,8 +21,8 @@ std::string calibrationText(const CaptureSet& capture);
 class InputDigests {
  public:
   Digest calibration(const CaptureSet& capture) const;
-  // The training views' pictures and masks of a frame.
-  Digest pictures(const CaptureSet& capture, FrameIndex frame) const;
+  // Pictures and masks of the frame's views of `split`.
+  Digest pictures(const CaptureSet& capture, FrameIndex frame, Split split) const;
   Digest file(const std::filesystem::path& path) const;
 
  private:

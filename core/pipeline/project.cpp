@@ -310,7 +310,10 @@ KeyIngredients Project::ingredients(std::string_view step, FrameIndex frame) con
         key.inputs["calibration"] = inputs_->calibration(capture());
         break;
       case Reads::Pictures:
-        key.inputs["pictures"] = inputs_->pictures(capture(), frame);
+        key.inputs["pictures"] = inputs_->pictures(capture(), frame, Split::Train);
+        break;
+      case Reads::HeldOut:
+        key.inputs["held_out"] = inputs_->pictures(capture(), frame, Split::Test);
         break;
       case Reads::Environment:
         if (const auto file = environmentFile()) key.inputs["environment"] = inputs_->file(*file);

@@ -25,6 +25,7 @@ class ComputeDevice;
 enum class Reads {
   Calibration,  // cameras, split and seed points of the capture
   Pictures,     // photographs and masks of the frame's training views
+  HeldOut,      // photographs and masks of the frame's held-out views; for scores, never for fitting
   Environment,  // the panorama
 };
 

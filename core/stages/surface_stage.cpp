@@ -4,8 +4,10 @@
 #include "core/io/splat_ply.h"
 #include "core/method/extract_mesh.h"
 #include "core/method/fit_surface.h"
+#include "core/method/score_views.h"
 #include "core/pipeline/frame_result.h"
 #include "core/stages/builtin_stages.h"
+#include "core/stages/score_files.h"
 #include "core/stages/training_input.h"
 
 namespace beam {
@@ -46,6 +48,11 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "surface.fit"},
                    .weight = 45},
+                  {.id = "score",
+                   .title = "Score against the photographs",
+                   .reads = {Reads::Pictures, Reads::HeldOut},
+                   .inputs = {"capture.import", "surface.refine"},
+                   .weight = 2},
                   {.id = "mesh",
                    .title = "Fuse a mesh",
                    .inputs = {"capture.import", "surface.refine"},
@@ -57,6 +64,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     if (step == "seed") return seed(c);
     if (step == "fit") return fit(c);
     if (step == "refine") return refine(c);
+    if (step == "score") return score(c);
     mesh(c);
   }
 
@@ -77,6 +85,24 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
   void refine(StepContext& c) const {
     const GaussianCloud fitted = readSplatPly(c.input("surface.fit") / kCloudFile).cloud;
     keep(c, refineGeometry(trainingViews(c), fitted, options_.fit, c.device, c.progress, c.preview));
+  }
+
+  // At the resolution of the fit; `beam evaluate` scores the whole pictures.
+  void score(StepContext& c) const {
+    const GaussianCloud cloud = readSplatPly(c.input("surface.refine") / kCloudFile).cloud;
+    std::vector<ViewScore> scores;
+    for (const bool held_out : {false, true}) {
+      Progress part = c.progress.part(0.5, held_out ? "held-out views" : "training views");
+      const std::vector<FrameView> views = held_out ? heldOutViews(c) : trainingViews(c);
+      for (ViewScore& s : scoreViews(views, held_out, cloud, c.device, part)) scores.push_back(std::move(s));
+      const SplitScore split = meanOf(scores, held_out);
+      if (split.n == 0) continue;
+      const std::string name = held_out ? "_test" : "_train";
+      c.scores["psnr" + name] = split.mean.psnr;
+      c.scores["ssim" + name] = split.mean.ssim;
+      c.scores["psnr_worst" + name] = scores[split.worst].score.psnr;
+    }
+    writeScores(c.folder, scores, trainingDownscale(c));
   }
 
   void mesh(StepContext& c) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training views of a step's frame, as capture.downscale wants them.
+// The views of a step's frame, as capture.downscale wants them.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,10 @@
 namespace beam {
 
 // The step must have "capture.import" among its inputs: its key then holds the downscale.
+int trainingDownscale(const StepContext& context);
 std::vector<FrameView> trainingViews(const StepContext& context);
+// For scores, never for fitting; the step reads Reads::HeldOut.
+std::vector<FrameView> heldOutViews(const StepContext& context);
 std::vector<Camera> trainingCameras(const StepContext& context);
 
 }  // namespace beam

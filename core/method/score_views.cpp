@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/score_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/method/training_views.h"
+#include "core/render/deferred.h"
+
+namespace beam {
+namespace {
+
+// As it comes back from a PNG.
+float rounded(float v) { return std::floor(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f) / 255.0f; }
+
+Planes planesOf(const Image<vec3>& image) {
+  Planes p(image.width, image.height, 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    for (int c = 0; c < 3; ++c) p.plane(c)[i] = rounded(image.pixels[i][c]);
+  }
+  return p;
+}
+
+Image<float> lumaOf(const Planes& p) {
+  Image<float> luma(p.width, p.height);
+  for (std::size_t i = 0; i < luma.pixels.size(); ++i) {
+    luma.pixels[i] = 0.2126f * p.plane(0)[i] + 0.7152f * p.plane(1)[i] + 0.0722f * p.plane(2)[i];
+  }
+  return luma;
+}
+
+double meanInside(const Image<float>& luma, const Image<std::uint8_t>& mask) {
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < luma.pixels.size(); ++i) {
+    if (mask.pixels[i] > 127) sum += luma.pixels[i], ++n;
+  }
+  return n > 0 ? sum / n : 0;
+}
+
+// Only where all neighbours are inside: the outline is the mask's, not the lens's.
+double sharpnessInside(const Image<float>& luma, const Image<std::uint8_t>& mask) {
+  double sum = 0, n = 0;
+  for (int y = 1; y + 1 < luma.height; ++y) {
+    for (int x = 1; x + 1 < luma.width; ++x) {
+      if (std::min({mask(x, y), mask(x - 1, y), mask(x + 1, y), mask(x, y - 1), mask(x, y + 1)}) <= 127)
+        continue;
+      sum += std::abs(4 * luma(x, y) - luma(x - 1, y) - luma(x + 1, y) - luma(x, y - 1) - luma(x, y + 1));
+      ++n;
+    }
+  }
+  return n > 0 ? sum / n : 0;
+}
+
+// `luma` is the part of a width x height picture that starts at (x0, y0).
+Image<std::uint8_t> thumbOf(const Image<float>& luma, int x0, int y0, int width, int height) {
+  const int cell = std::max(1, (std::max(width, height) + kThumbSide_px - 1) / kThumbSide_px);
+  Image<float> sum(kThumbSide_px, kThumbSide_px);
+  for (int y = 0; y < luma.height; ++y) {
+    for (int x = 0; x < luma.width; ++x) {
+      const int i = (x + x0) / cell, j = (y + y0) / cell;
+      if (i < kThumbSide_px && j < kThumbSide_px) sum(i, j) += luma(x, y);
+    }
+  }
+  Image<std::uint8_t> thumb(kThumbSide_px, kThumbSide_px);
+  const float scale = 255.0f / static_cast<float>(cell * cell);
+  for (std::size_t i = 0; i < thumb.pixels.size(); ++i) {
+    thumb.pixels[i] = static_cast<std::uint8_t>(std::min(255.0f, sum.pixels[i] * scale + 0.5f));
+  }
+  return thumb;
+}
+
+Image<std::uint8_t> countedPixels(const TrainingView& view) {
+  const bool any =
+      std::any_of(view.mask.pixels.begin(), view.mask.pixels.end(), [](std::uint8_t m) { return m > 0; });
+  return any ? view.mask : Image<std::uint8_t>(view.photo.width, view.photo.height, 255);
+}
+
+}  // namespace
+
+std::vector<ViewScore> scoreViews(std::span<const FrameView> views, bool held_out, const GaussianCloud& cloud,
+                                  ComputeDevice& device, Progress& progress) {
+  std::vector<ViewScore> scores;
+  if (views.empty()) return scores;
+  progress.expect(static_cast<std::int64_t>(views.size()));
+  const std::vector<TrainingView> crops = cropToMasks(views);
+  GBufferRenderer renderer(device);
+  Planes photo;
+  for (std::size_t i = 0; i < crops.size(); ++i) {
+    const TrainingView& crop = crops[i];
+    const FrameView& whole = views[i];
+    const Image<std::uint8_t> mask = countedPixels(crop);
+    compose(crop, vec3(0), photo);
+    for (float& v : photo.values) v = rounded(v);
+    const Planes render = planesOf(renderer.render(cloud, nullptr, crop.camera).radiance);
+    const Image<float> photo_luma = lumaOf(photo), render_luma = lumaOf(render);
+    const int x0 = static_cast<int>(std::lround(whole.camera.intrinsics.cx - crop.camera.intrinsics.cx));
+    const int y0 = static_cast<int>(std::lround(whole.camera.intrinsics.cy - crop.camera.intrinsics.cy));
+    const auto thumb = [&](const Image<float>& luma) {
+      return thumbOf(luma, x0, y0, whole.photo.width, whole.photo.height);
+    };
+    scores.push_back({whole.name, held_out, scorePicture(render, photo, mask), meanInside(photo_luma, mask),
+                      meanInside(render_luma, mask), sharpnessInside(photo_luma, mask),
+                      sharpnessInside(render_luma, mask), thumb(photo_luma), thumb(render_luma)});
+    progress.step();
+  }
+  return scores;
+}
+
+SplitScore meanOf(std::span<const ViewScore> scores, bool held_out) {
+  SplitScore s;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    if (scores[i].held_out != held_out) continue;
+    const PictureScore& p = scores[i].score;
+    s.mean.psnr += p.psnr, s.mean.ssim += p.ssim, s.mean.psnr_mask += p.psnr_mask;
+    if (s.n == 0 || p.psnr < scores[s.worst].score.psnr) s.worst = i;
+    ++s.n;
+  }
+  const double n = static_cast<double>(std::max<std::size_t>(1, s.n));
+  s.mean.psnr /= n, s.mean.ssim /= n, s.mean.psnr_mask /= n;
+  return s;
+}
+
+}  // namespace beam

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/stages/score_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/io/image_file.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kScoresFile = "scores.json";
+constexpr const char* kThumbsFile = "thumbs.png";
+
+Json toJson(const SplitScore& split, const std::vector<ViewScore>& scores) {
+  return {{"psnr", split.mean.psnr},
+          {"ssim", split.mean.ssim},
+          {"psnr_mask", split.mean.psnr_mask},
+          {"cameras", split.n},
+          {"worst", scores[split.worst].camera}};
+}
+
+void paste(const Image<std::uint8_t>& thumb, int x0, int y0, Image<std::uint8_t>& sheet) {
+  for (int y = 0; y < thumb.height; ++y) {
+    std::copy_n(&thumb.pixels[thumb.index(0, y)], thumb.width, &sheet.pixels[sheet.index(x0, y0 + y)]);
+  }
+}
+
+Image<std::uint8_t> cut(const Image<std::uint8_t>& sheet, int x0, int y0) {
+  Image<std::uint8_t> thumb(kThumbSide_px, kThumbSide_px);
+  for (int y = 0; y < thumb.height; ++y) {
+    std::copy_n(&sheet.pixels[sheet.index(x0, y0 + y)], thumb.width, &thumb.pixels[thumb.index(0, y)]);
+  }
+  return thumb;
+}
+
+ViewScore scoreOf(const Json& j) {
+  ViewScore s;
+  s.camera = j.at("camera").get<std::string>();
+  s.held_out = j.at("split").get<std::string>() == "test";
+  s.score = {j.at("psnr").get<double>(), j.at("ssim").get<double>(), j.at("psnr_mask").get<double>()};
+  s.photo_luma = j.at("photo_luma").get<double>();
+  s.render_luma = j.at("render_luma").get<double>();
+  s.photo_sharpness = j.at("photo_sharpness").get<double>();
+  s.render_sharpness = j.at("render_sharpness").get<double>();
+  return s;
+}
+
+}  // namespace
+
+void writeScores(const fs::path& folder, const std::vector<ViewScore>& scores, int downscale) {
+  Json j = {{"downscale", downscale}};
+  for (const bool held_out : {false, true}) {
+    const SplitScore split = meanOf(scores, held_out);
+    if (split.n > 0) j[held_out ? "test" : "train"] = toJson(split, scores);
+  }
+  j["views"] = Json::array();
+  Image<std::uint8_t> sheet(2 * kThumbSide_px, kThumbSide_px * std::max(1, static_cast<int>(scores.size())));
+  int y0 = 0;
+  for (const ViewScore& s : scores) {
+    j["views"].push_back({{"camera", s.camera},
+                          {"split", s.held_out ? "test" : "train"},
+                          {"psnr", s.score.psnr},
+                          {"ssim", s.score.ssim},
+                          {"psnr_mask", s.score.psnr_mask},
+                          {"photo_luma", s.photo_luma},
+                          {"render_luma", s.render_luma},
+                          {"photo_sharpness", s.photo_sharpness},
+                          {"render_sharpness", s.render_sharpness}});
+    paste(s.photo_thumb, 0, y0, sheet);
+    paste(s.render_thumb, kThumbSide_px, y0, sheet);
+    y0 += kThumbSide_px;
+  }
+  writeFileAtomically(folder / kScoresFile, j.dump(1) + "\n");
+  writePng(folder / kThumbsFile, sheet);
+}
+
+std::vector<ViewScore> readScores(const fs::path& folder) {
+  const fs::path file = folder / kScoresFile;
+  try {
+    const Json j = Json::parse(readTextFile(file));
+    std::vector<ViewScore> scores;
+    for (const Json& view : j.at("views")) scores.push_back(scoreOf(view));
+    const Image<std::uint8_t> sheet = readMask(folder / kThumbsFile);
+    if (sheet.width != 2 * kThumbSide_px || sheet.height < kThumbSide_px * static_cast<int>(scores.size())) {
+      throw Error(Error::Kind::Data,
+                  fmt::format("\"{}\": expected a pair of thumbnails for each of {} cameras, found {} x {} "
+                              "pixels",
+                              (folder / kThumbsFile).string(), scores.size(), sheet.width, sheet.height));
+    }
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      const int y0 = static_cast<int>(i) * kThumbSide_px;
+      scores[i].photo_thumb = cut(sheet, 0, y0);
+      scores[i].render_thumb = cut(sheet, kThumbSide_px, y0);
+    }
+    return scores;
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" cannot be understood: {}", file.string(), e.what()));
+  }
+}
+
+}  // namespace beam
