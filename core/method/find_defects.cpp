@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/find_defects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kFewestOthers = 3;  // cameras a median needs to say what is usual
+constexpr double kSmallest = 1e-4;
+constexpr double kStill = 0.5;  // mean squared difference of thumbnails, grey levels: noise, no motion
+
+using CameraScores = std::vector<const ViewScore*>;  // one a frame; null: none
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0;
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+std::map<std::string, CameraScores> byCamera(std::span<const ScoredFrame> frames) {
+  std::map<std::string, CameraScores> cameras;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    for (const ViewScore& v : frames[f].views) {
+      CameraScores& scores = cameras[v.camera];
+      scores.resize(frames.size(), nullptr);
+      scores[f] = &v;
+    }
+  }
+  return cameras;
+}
+
+double meanSquaredDifference(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b) {
+  if (a.pixels.size() != b.pixels.size() || a.empty()) return 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const double d = static_cast<double>(a.pixels[i]) - b.pixels[i];
+    sum += d * d;
+  }
+  return sum / static_cast<double>(a.pixels.size());
+}
+
+bool isBlack(const ViewScore& v, const DefectLimits& limits) {
+  return v.photo_luma < limits.black_luma && v.render_luma > 3 * limits.black_luma;
+}
+
+class DefectFinder {
+ public:
+  DefectFinder(std::span<const ScoredFrame> frames, const DefectLimits& limits)
+      : frames_(frames), limits_(limits), cameras_(byCamera(frames)) {}
+
+  std::vector<Defect> find() {
+    missing();
+    for (const auto& [camera, scores] : cameras_) {
+      black(camera, scores);
+      frozen(camera, scores);
+      late(camera, scores);
+    }
+    outliers(DefectKind::Blurred);
+    outliers(DefectKind::Exposure);
+    std::stable_sort(found_.begin(), found_.end(), [](const Defect& a, const Defect& b) {
+      return std::pair(a.camera, a.kind) < std::pair(b.camera, b.kind);
+    });
+    return std::move(found_);
+  }
+
+ private:
+  void add(DefectKind kind, const std::string& camera, const std::vector<std::size_t>& at, double figure,
+           std::string text) {
+    Defect d{kind, camera, {}, figure, std::move(text)};
+    for (const std::size_t f : at) d.frames.push_back(frames_[f].name);
+    addLoss(at, d);
+    found_.push_back(std::move(d));
+  }
+
+  void addLoss(const std::vector<std::size_t>& at, Defect& d) const {
+    double all = 0, others = 0, n = 0, n_others = 0;
+    for (const std::size_t f : at) {
+      for (const ViewScore& v : frames_[f].views) {
+        if (v.held_out) continue;
+        all += v.score.psnr, ++n;
+        if (v.camera != d.camera) others += v.score.psnr, ++n_others;
+      }
+    }
+    if (n_others == 0) return;
+    d.psnr_with = all / n;
+    d.psnr_without = others / n_others;
+  }
+
+  void missing() {
+    std::map<std::string, std::vector<std::size_t>> gone;
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      for (const std::string& camera : frames_[f].missing) gone[camera].push_back(f);
+    }
+    for (const auto& [camera, at] : gone) {
+      add(DefectKind::Missing, camera, at, static_cast<double>(at.size()),
+          fmt::format("has no readable picture in {} of {} frames; the frames were solved without it. Copy "
+                      "the missing pictures from the camera, or leave it",
+                      at.size(), frames_.size()));
+    }
+  }
+
+  void black(const std::string& camera, const CameraScores& scores) {
+    std::vector<std::size_t> at;
+    double luma = 0;
+    for (std::size_t f = 0; f < scores.size(); ++f) {
+      if (scores[f] && isBlack(*scores[f], limits_)) at.push_back(f), luma = scores[f]->photo_luma;
+    }
+    if (at.empty()) return;
+    add(DefectKind::Black, camera, at, luma,
+        fmt::format("is black in {} frame{} (mean luma {:.3f} where the render has more than {:.2f}). Remove "
+                    "those pictures from the capture and run the frames again",
+                    at.size(), at.size() == 1 ? "" : "s", luma, 3 * limits_.black_luma));
+  }
+
+  // The same picture twice while most other cameras saw something move.
+  void frozen(const std::string& camera, const CameraScores& scores) {
+    std::vector<std::size_t> at;
+    for (std::size_t f = 1; f < scores.size(); ++f) {
+      if (stoodStill(scores, f) != true || isBlack(*scores[f], limits_)) continue;
+      std::size_t moved = 0, others = 0;
+      for (const auto& [name, other] : cameras_) {
+        const std::optional<bool> still = stoodStill(other, f);
+        if (name == camera || !still) continue;
+        ++others;
+        moved += !*still;
+      }
+      if (others >= kFewestOthers && 2 * moved > others) at.push_back(f);
+    }
+    if (at.empty()) return;
+    add(DefectKind::Frozen, camera, at, static_cast<double>(at.size()),
+        fmt::format("repeats the picture before in {} frame{} while the others moved. Remove the repeated "
+                    "pictures from the capture and run the frames again",
+                    at.size(), at.size() == 1 ? "" : "s"));
+  }
+
+  // Nothing: the frame before has no picture.
+  std::optional<bool> stoodStill(const CameraScores& scores, std::size_t f) const {
+    if (!scores[f] || !scores[f - 1] || frames_[f].index != frames_[f - 1].index + 1) return std::nullopt;
+    const ViewScore &a = *scores[f - 1], &b = *scores[f];
+    return a.photo_luma == b.photo_luma && a.photo_sharpness == b.photo_sharpness &&
+           a.photo_thumb.pixels == b.photo_thumb.pixels;
+  }
+
+  // Mean squared difference between the camera's photographs and its renders `lag` frames before, and for the
+  // same photographs at no lag.
+  std::pair<double, double> differences(const CameraScores& scores, int lag) const {
+    double lagged = 0, own = 0, n = 0;
+    for (std::size_t f = 0; f < scores.size(); ++f) {
+      const auto other = std::find_if(frames_.begin(), frames_.end(), [&](const ScoredFrame& s) {
+        return s.index == frames_[f].index - lag;
+      });
+      if (other == frames_.end() || !scores[f] || isBlack(*scores[f], limits_)) continue;
+      const ViewScore* there = scores[static_cast<std::size_t>(other - frames_.begin())];
+      if (!there) continue;
+      lagged += meanSquaredDifference(scores[f]->photo_thumb, there->render_thumb);
+      own += meanSquaredDifference(scores[f]->photo_thumb, scores[f]->render_thumb);
+      ++n;
+    }
+    return n > 0 ? std::pair(lagged / n, own / n) : std::pair(0.0, 0.0);
+  }
+
+  void late(const std::string& camera, const CameraScores& scores) {
+    int best_lag = 0;
+    double best = limits_.late_gain;
+    for (int lag = -limits_.most_late; lag <= limits_.most_late; ++lag) {
+      const auto [lagged, own] = differences(scores, lag);
+      if (lag == 0 || own < kStill || lagged >= best * own) continue;
+      best = lagged / own;
+      best_lag = lag;
+    }
+    if (best_lag == 0) return;
+    std::vector<std::size_t> at;
+    for (std::size_t f = 0; f < scores.size(); ++f) {
+      if (scores[f]) at.push_back(f);
+    }
+    const int count = std::abs(best_lag);
+    add(DefectKind::Late, camera, at, best_lag,
+        fmt::format("is {} frame{} {}: its photographs differ {:.0f} % less from the renders of that moment "
+                    "than from their own. Shift its pictures by {}, or leave the camera out",
+                    count, count == 1 ? "" : "s", best_lag > 0 ? "late" : "early", 100 * (1 - best), count));
+  }
+
+  // What a camera's photograph has of the render's sharpness or brightness, against the median camera.
+  void outliers(DefectKind kind) {
+    std::map<std::string, std::vector<std::pair<std::size_t, double>>> flagged;
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      std::vector<std::pair<const ViewScore*, double>> shares;
+      std::vector<double> values;
+      for (const ViewScore& v : frames_[f].views) {
+        if (isBlack(v, limits_)) continue;
+        const double share = kind == DefectKind::Blurred
+                                 ? v.photo_sharpness / std::max(kSmallest, v.render_sharpness)
+                                 : v.photo_luma / std::max(kSmallest, v.render_luma);
+        shares.emplace_back(&v, share);
+        values.push_back(share);
+      }
+      if (shares.size() <= kFewestOthers) continue;
+      const double usual = std::max(kSmallest, median(values));
+      for (const auto& [view, share] : shares) {
+        const double factor = share / usual;
+        const bool out = kind == DefectKind::Blurred
+                             ? factor < limits_.blurred_share
+                             : std::max(factor, 1 / std::max(kSmallest, factor)) > limits_.exposure_factor;
+        if (out) flagged[view->camera].emplace_back(f, factor);
+      }
+    }
+    for (const auto& [camera, list] : flagged) addOutlier(kind, camera, list);
+  }
+
+  void addOutlier(DefectKind kind, const std::string& camera,
+                  const std::vector<std::pair<std::size_t, double>>& list) {
+    std::vector<std::size_t> at;
+    std::vector<double> factors;
+    for (const auto& [f, factor] : list) at.push_back(f), factors.push_back(factor);
+    const double factor = median(factors);
+    const std::string where = fmt::format("in {} of {} frames", at.size(), frames_.size());
+    add(kind, camera, at, factor,
+        kind == DefectKind::Blurred
+            ? fmt::format("is blurred {}: {:.0f} % of the sharpness that the other cameras have against the "
+                          "render. Check its focus and exposure time; leave it out with --hold-out",
+                          where, 100 * factor)
+            : fmt::format("is exposed {:.2f} times as bright as the other cameras {}. Match its exposure in "
+                          "the pictures; leave it out with --hold-out",
+                          factor, where));
+  }
+
+  std::span<const ScoredFrame> frames_;
+  const DefectLimits& limits_;
+  std::map<std::string, CameraScores> cameras_;
+  std::vector<Defect> found_;
+};
+
+}  // namespace
+
+const char* toText(DefectKind kind) {
+  switch (kind) {
+    case DefectKind::Missing:
+      return "missing pictures";
+    case DefectKind::Black:
+      return "black";
+    case DefectKind::Frozen:
+      return "frozen";
+    case DefectKind::Blurred:
+      return "blurred";
+    case DefectKind::Late:
+      return "late";
+    case DefectKind::Exposure:
+      return "exposure";
+  }
+  return "";
+}
+
+std::vector<Defect> findDefects(std::span<const ScoredFrame> frames, const DefectLimits& limits) {
+  return DefectFinder(frames, limits).find();
+}
+
+}  // namespace beam
