@@ -27,6 +27,7 @@ void addCommands(CLI::App& app, CommandContext& context) {
   addSampleCommand(app, context);
   addRenderCommand(app, context);
   addEvaluateCommand(app, context);
+  addReportCommand(app, context);
   addExportCommand(app, context);
 }
 

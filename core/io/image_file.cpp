@@ -145,6 +145,17 @@ Image<std::uint8_t> channelOf(const cv::Mat& m, int channel) {
   return out;
 }
 
+cv::Mat matOf(const Image<u8vec3>& image) {
+  cv::Mat m(image.height, image.width, CV_8UC3);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const u8vec3 p = image(x, y);
+      m.at<cv::Vec3b>(y, x) = cv::Vec3b(p.z, p.y, p.x);
+    }
+  }
+  return m;
+}
+
 void writeEncoded(const std::filesystem::path& path, const cv::Mat& m) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", m, bytes)) throw Error(Error::Kind::Bug, "cannot encode a PNG picture");
@@ -212,14 +223,16 @@ Image<vec3> readRadiance(const std::filesystem::path& path) {
 }
 
 void writePng(const std::filesystem::path& path, const Image<u8vec3>& image) {
-  cv::Mat m(image.height, image.width, CV_8UC3);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const u8vec3 p = image(x, y);
-      m.at<cv::Vec3b>(y, x) = cv::Vec3b(p.z, p.y, p.x);
-    }
+  writeEncoded(path, matOf(image));
+}
+
+std::vector<std::byte> encodeJpeg(const Image<u8vec3>& image, int quality) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".jpg", matOf(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality})) {
+    throw Error(Error::Kind::Bug, "cannot encode a JPEG picture");
   }
-  writeEncoded(path, m);
+  const auto all = std::as_bytes(std::span(bytes));
+  return {all.begin(), all.end()};
 }
 
 void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image) {

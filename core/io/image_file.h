@@ -4,6 +4,7 @@
 // and found.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -38,6 +39,9 @@ std::vector<std::string> exrChannels(const std::filesystem::path& path);
 
 void writePng(const std::filesystem::path& path, const Image<u8vec3>& image);
 void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image);
+
+// A JPEG picture in memory; quality in [0, 100].
+std::vector<std::byte> encodeJpeg(const Image<u8vec3>& image, int quality);
 
 enum class ExrPrecision { Half, Float };
 // One channel a plane, PIZ-compressed, named as given ("Y", or "R" "G" "B").

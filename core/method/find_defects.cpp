@@ -150,7 +150,7 @@ class DefectFinder {
   }
 
   // Mean squared difference between the camera's photographs and its renders `lag` frames before, and for the
-  // same photographs at no lag.
+  // same photographs at no lag; repeated pictures say nothing of the moment.
   std::pair<double, double> differences(const CameraScores& scores, int lag) const {
     double lagged = 0, own = 0, n = 0;
     for (std::size_t f = 0; f < scores.size(); ++f) {
@@ -158,6 +158,7 @@ class DefectFinder {
         return s.index == frames_[f].index - lag;
       });
       if (other == frames_.end() || !scores[f] || isBlack(*scores[f], limits_)) continue;
+      if (f > 0 && stoodStill(scores, f) == true) continue;
       const ViewScore* there = scores[static_cast<std::size_t>(other - frames_.begin())];
       if (!there) continue;
       lagged += meanSquaredDifference(scores[f]->photo_thumb, there->render_thumb);
@@ -181,11 +182,18 @@ class DefectFinder {
     for (std::size_t f = 0; f < scores.size(); ++f) {
       if (scores[f]) at.push_back(f);
     }
+    // A camera that took part in the fit has drawn the renders towards its own moment.
+    const bool fitted = !scores[at.front()]->held_out;
     const int count = std::abs(best_lag);
     add(DefectKind::Late, camera, at, best_lag,
-        fmt::format("is {} frame{} {}: its photographs differ {:.0f} % less from the renders of that moment "
-                    "than from their own. Shift its pictures by {}, or leave the camera out",
-                    count, count == 1 ? "" : "s", best_lag > 0 ? "late" : "early", 100 * (1 - best), count));
+        fmt::format(
+            "is {}{} frame{} {}: its photographs differ {:.0f} % less from the renders of that moment "
+            "than from their own. {}",
+            fitted ? "at least " : "", count, count == 1 ? "" : "s", best_lag > 0 ? "late" : "early",
+            100 * (1 - best),
+            fitted ? "It took part in the fit, which hides a part: hold it out with --hold-out, which "
+                     "also gives the whole number"
+                   : "Shift its pictures by as many"));
   }
 
   // What a camera's photograph has of the render's sharpness or brightness, against the median camera.

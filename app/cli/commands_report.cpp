@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// beam report: the quality of a project over time as one page.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/cli/commands.h"
+#include "app/cli/report_page.h"
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/io/file.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportFlags {
+  std::string project, out;
+  DeviceChoice device;
+};
+
+std::string textOf(const FieldValue& value) {
+  return std::visit(
+      [](const auto& v) -> std::string {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, bool>) return v ? "true" : "false";
+        return fmt::format("{}", v);
+      },
+      value);
+}
+
+std::vector<std::pair<std::string, std::string>> factsOf(const Project& project) {
+  const CaptureSet& capture = project.capture();
+  const auto held_out = std::count_if(capture.views.begin(), capture.views.end(),
+                                      [](const View& v) { return v.split == Split::Test; });
+  const std::size_t train = capture.views.size() - static_cast<std::size_t>(held_out);
+  std::vector<std::pair<std::string, std::string>> facts = {
+      {"Capture", fmt::format("{}: {} training and {} held-out cameras, {} frames, {}", capture.name, train,
+                              held_out, capture.frames.size(), project.imported().layout)},
+      {"Preset", project.document().preset}};
+  for (const StageInfo& stage : project.setup().stages.infos()) {
+    const std::string reason = project.blockedReason(stage.id);
+    if (!reason.empty()) facts.emplace_back(stage.title, reason);
+  }
+  return facts;
+}
+
+// First, middle, last and worst of the frames with results, in order of time.
+std::vector<FrameIndex> shownFrames(const QualityHistory& history) {
+  std::vector<std::size_t> chosen = worstFrames(history, 1);
+  if (!history.frames.empty()) {
+    const std::size_t last = history.frames.size() - 1;
+    chosen.insert(chosen.end(), {0, last / 2, last});
+  }
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  std::vector<FrameIndex> frames;
+  for (const std::size_t f : chosen) frames.push_back(history.frames[f].frame);
+  return frames;
+}
+
+// A held-out camera, a training camera, and the training camera that scores least in the worst frame.
+std::vector<std::string> shownCameras(const Project& project, const QualityHistory& history) {
+  std::vector<std::string> cameras;
+  for (const Split split : {Split::Train, Split::Test}) {
+    const auto& views = project.capture().views;
+    const auto found =
+        std::find_if(views.begin(), views.end(), [&](const View& v) { return v.split == split; });
+    if (found != views.end()) cameras.push_back(found->name);
+  }
+  for (const std::size_t f : worstFrames(history, 1)) {
+    const FrameQuality& q = history.frames[f];
+    cameras.push_back(q.views[meanOf(q.views, false).worst].camera);
+  }
+  return cameras;
+}
+
+// What `beam evaluate` left in the project; nothing when it never ran.
+std::vector<std::pair<std::string, std::map<std::string, double>>> evaluationOf(const Project& project) {
+  const fs::path file = project.folder() / "evaluation.json";
+  std::vector<std::pair<std::string, std::map<std::string, double>>> table;
+  if (!fs::exists(file)) return table;
+  try {
+    const auto json = nlohmann::ordered_json::parse(readTextFile(file));
+    for (const auto& [map, scores] : json.items()) {
+      std::map<std::string, double> row;
+      if (!scores.is_object()) continue;
+      for (const auto& [name, value] : scores.items()) {
+        if (value.is_number()) row[name] = value.template get<double>();
+      }
+      if (!row.empty()) table.emplace_back(map, std::move(row));
+    }
+  } catch (const nlohmann::json::exception& e) {
+    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(), e.what());
+  }
+  return table;
+}
+
+int runReport(const ReportFlags& flags, CommandContext& context) {
+  const Project project = Project::open(flags.project, context.services.pipeline);
+  ReportPage page{
+      project.name(), versionText(), factsOf(project), {}, project.capture().frames.size(), {}, {}, {}};
+  page.history = qualityHistory(project);
+  if (page.history.frames.empty()) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
+                                               project.folder().string()));
+  }
+  for (const auto& [key, value] : project.document().settings) page.settings.emplace_back(key, textOf(value));
+  const auto device = makeDevice(flags.device);
+  Progress progress(context.stop, context.console.listener());
+  page.pictures = contactSheet(project, shownFrames(page.history), shownCameras(project, page.history),
+                               *device, progress);
+  page.evaluation = evaluationOf(project);
+  writeFileAtomically(flags.out, toHtml(page));
+  context.console.endProgress();
+  for (const Defect& d : page.history.defects)
+    context.console.warning(
+        fmt::format("camera {} {} (frames {})", d.camera, d.text, fmt::join(d.frames, ", ")));
+  context.console.print(fmt::format("wrote the report of {} frame{} to \"{}\"", page.history.frames.size(),
+                                    page.history.frames.size() == 1 ? "" : "s", flags.out));
+  return 0;
+}
+
+}  // namespace
+
+void addReportCommand(CLI::App& app, CommandContext& context) {
+  auto flags = std::make_shared<ReportFlags>();
+  CLI::App* command =
+      app.add_subcommand("report", "Write the quality of a project over time as one HTML page");
+  command->add_option("PROJECT", flags->project, "Project folder")->required();
+  command->add_option("--out", flags->out, "The page to write")->required();
+  addDeviceFlags(*command, flags->device);
+  command->callback(
+      [flags, &context] { context.action = [flags, &context] { return runReport(*flags, context); }; });
+}
+
+}  // namespace beam

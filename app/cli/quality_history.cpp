@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/quality_history.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/stages/score_files.h"
+
+namespace beam {
+namespace {
+
+constexpr const char* kScoreStep = "surface.score";
+
+class Collector {
+ public:
+  explicit Collector(const Project& project) : project_(project) {
+    for (const std::string& w : project.imported().warnings) warn(w);
+  }
+
+  QualityHistory collect() {
+    for (const StageInfo& stage : project_.setup().stages.infos()) {
+      if (!project_.blockedReason(stage.id).empty()) continue;
+      for (const StepInfo& step : stage.steps) {
+        (step.per_frame ? frame_steps_ : project_steps_).push_back(stage.id + "." + step.id);
+      }
+    }
+    for (const std::string& step : project_steps_) {
+      if (const auto record = project_.record(step, FrameIndex{})) count(*record);
+    }
+    for (std::size_t f = 0; f < project_.capture().frames.size(); ++f) {
+      FrameQuality q = frame(FrameIndex{static_cast<std::int32_t>(f)});
+      if (!q.seconds.empty() || !q.failures.empty()) history_.frames.push_back(std::move(q));
+    }
+    history_.defects = findDefects(scored());
+    return std::move(history_);
+  }
+
+ private:
+  void warn(const std::string& text) {
+    if (told_.insert(text).second) history_.warnings.push_back(text);
+  }
+
+  void count(const ResultRecord& record) {
+    history_.seconds += record.seconds;
+    history_.peak_memory_bytes =
+        std::max(history_.peak_memory_bytes, static_cast<double>(record.peak_memory_bytes));
+    for (const std::string& w : record.warnings) warn(w);
+  }
+
+  FrameQuality frame(FrameIndex index) {
+    FrameQuality q{index, project_.capture().frames[static_cast<std::size_t>(index.value)], {}, {}, {}, {}};
+    for (const std::string& step : frame_steps_) {
+      if (const auto record = project_.record(step, index)) {
+        count(*record);
+        q.seconds[step] = record->seconds;
+        for (const auto& [name, value] : record->scores) q.scores[step + "." + name] = value;
+      } else if (std::string failure = project_.failureOf(step, index); !failure.empty()) {
+        q.failures[step] = std::move(failure);
+      }
+    }
+    if (q.seconds.contains(kScoreStep)) q.views = views(index);
+    return q;
+  }
+
+  std::vector<ViewScore> views(FrameIndex index) const {
+    try {
+      if (const auto folder = project_.result(kScoreStep, index)) return readScores(*folder);
+    } catch (const Error& e) {
+      logWarning("{}; the frame is shown without its views", e.what());
+    }
+    return {};
+  }
+
+  // Test cameras of a data set have their photographs in its ground truth alone: they are not missing.
+  bool hasPictures(ViewIndex view) const {
+    for (std::size_t f = 0; f < project_.capture().frames.size(); ++f) {
+      if (project_.capture().source->has(view, FrameIndex{static_cast<std::int32_t>(f)})) return true;
+    }
+    return false;
+  }
+
+  // A camera with pictures that was not scored had no readable one: nothing else leaves it out.
+  std::vector<ScoredFrame> scored() const {
+    std::vector<std::string> expected;
+    for (std::size_t v = 0; v < project_.capture().views.size(); ++v) {
+      if (hasPictures(ViewIndex{static_cast<std::int32_t>(v)}))
+        expected.push_back(project_.capture().views[v].name);
+    }
+    std::vector<ScoredFrame> frames;
+    for (const FrameQuality& q : history_.frames) {
+      if (q.views.empty()) continue;
+      ScoredFrame s{q.name, q.frame.value, q.views, {}};
+      for (const std::string& camera : expected) {
+        const bool there = std::any_of(q.views.begin(), q.views.end(),
+                                       [&](const ViewScore& v) { return v.camera == camera; });
+        if (!there) s.missing.push_back(camera);
+      }
+      frames.push_back(std::move(s));
+    }
+    return frames;
+  }
+
+  const Project& project_;
+  QualityHistory history_;
+  std::vector<std::string> project_steps_, frame_steps_;
+  std::set<std::string> told_;
+};
+
+}  // namespace
+
+QualityHistory qualityHistory(const Project& project) { return Collector(project).collect(); }
+
+std::vector<Curve> curvesOf(const QualityHistory& history) {
+  std::map<std::string, Curve> curves;
+  for (std::size_t f = 0; f < history.frames.size(); ++f) {
+    for (const auto& [name, value] : history.frames[f].scores) {
+      curves[name].name = name;
+      curves[name].points.emplace_back(f, value);
+    }
+  }
+  std::vector<Curve> list;
+  for (auto& [name, curve] : curves) list.push_back(std::move(curve));
+  return list;
+}
+
+Better betterOf(const std::string& score) {
+  const auto holds = [&](const char* word) { return score.find(word) != std::string::npos; };
+  if (holds("psnr") || holds("ssim")) return Better::More;
+  for (const char* word : {"loss", "residual", "e_", "error", "chamfer", "angle", "_mm", "flicker"}) {
+    if (holds(word)) return Better::Less;
+  }
+  return Better::Neither;
+}
+
+std::vector<std::size_t> worstFrames(const QualityHistory& history, std::size_t count) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t f = 0; f < history.frames.size(); ++f) {
+    const SplitScore train = meanOf(history.frames[f].views, false);
+    if (train.n > 0) order.emplace_back(train.mean.psnr, f);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> worst;
+  for (std::size_t i = 0; i < std::min(count, order.size()); ++i) worst.push_back(order[i].second);
+  return worst;
+}
+
+}  // namespace beam

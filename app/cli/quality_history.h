@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a project's records say of its frames over time: every score of every step, the views' scores, time,
+// memory and warnings. Reads results, computes nothing.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/method/find_defects.h"
+#include "core/pipeline/project.h"
+
+namespace beam {
+
+struct FrameQuality {
+  FrameIndex frame;
+  std::string name;
+  std::map<std::string, double> scores;         // by full name: "surface.score.psnr_train"
+  std::map<std::string, double> seconds;        // by step
+  std::map<std::string, std::string> failures;  // by step
+  std::vector<ViewScore> views;                 // empty: not scored
+};
+
+struct QualityHistory {
+  std::vector<FrameQuality> frames;   // with at least one result or failure, in order
+  std::vector<std::string> warnings;  // of the capture and of the records, each once
+  std::vector<Defect> defects;
+  double seconds = 0;  // of all results, the project's own too
+  double peak_memory_bytes = 0;
+};
+
+QualityHistory qualityHistory(const Project& project);
+
+// Scores of several frames, by name, in order of frames.
+struct Curve {
+  std::string name;
+  std::vector<std::pair<std::size_t, double>> points;  // index in history.frames, value
+};
+std::vector<Curve> curvesOf(const QualityHistory& history);
+// Whether more is better (psnr, ssim); nothing is said of counts.
+enum class Better { More, Less, Neither };
+Better betterOf(const std::string& score);
+// Frames by mean psnr of the training views, worst first; at most `count`. Frames without scores are left
+// out.
+std::vector<std::size_t> worstFrames(const QualityHistory& history, std::size_t count);
+
+}  // namespace beam
