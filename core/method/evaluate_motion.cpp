@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/evaluate_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/math/knn.h"
+
+namespace beam {
+namespace {
+
+constexpr double kTrackedShare = 0.25;
+constexpr std::size_t kFewestPoints = 50;
+constexpr float kOpaque = 0.5f;
+
+// The smallest turn from unit a to unit b; half a turn about any axis where they are opposite.
+dmat3 turnBetween(const dvec3& a, const dvec3& b) {
+  const dvec3 axis = glm::cross(a, b);
+  const double cosine = glm::dot(a, b);
+  if (cosine < -1 + 1e-9) {
+    const dvec3 other = std::abs(a.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+    const dvec3 u = glm::normalize(glm::cross(a, other));
+    return 2.0 * glm::outerProduct(u, u) - dmat3(1.0);
+  }
+  const dmat3 k(0, axis.z, -axis.y, -axis.z, 0, axis.x, axis.y, -axis.x, 0);
+  return dmat3(1.0) + k + k * k / (1 + cosine);
+}
+
+std::optional<std::size_t> pixelOf(const Camera& camera, const dvec3& in_camera) {
+  if (in_camera.z <= 0) return std::nullopt;
+  const dvec2 p = project(camera.intrinsics, in_camera);
+  const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y));
+  if (p.x < 0 || p.y < 0 || x >= camera.width || y >= camera.height) return std::nullopt;
+  return static_cast<std::size_t>(y) * camera.width + x;
+}
+
+// Where the view shows the point; nothing when it does not.
+std::optional<std::size_t> seenAt(const GBuffer& g, const Camera& camera, const vec3& position,
+                                  const vec3& normal, double most_m) {
+  const dvec3 in_camera = camera.camera_from_world * dvec3(position);
+  if (glm::dot(camera.camera_from_world.rotation * dvec3(normal), in_camera) >= 0) return std::nullopt;
+  const std::optional<std::size_t> pixel = pixelOf(camera, in_camera);
+  if (!pixel || g.alpha.pixels[*pixel] < kOpaque) return std::nullopt;
+  if (std::abs(g.depth_m.pixels[*pixel] - in_camera.z) > most_m) return std::nullopt;
+  return pixel;
+}
+
+double meanChange(const vec3& a, const vec3& b) {
+  const vec3 d = glm::abs(a - b);
+  return (static_cast<double>(d.x) + d.y + d.z) / 3;
+}
+
+double changeOfDegree0(const ShBlock& before, const ShBlock& now, const std::vector<float>& opacity) {
+  constexpr double kBasis0 = 0.28209479177387814;  // 1 / (2 sqrt(pi))
+  double sum = 0, weight = 0;
+  for (std::size_t i = 0; i < opacity.size(); ++i) {
+    double change = 0;
+    for (int c = 0; c < 3; ++c)
+      change += kBasis0 * std::abs(static_cast<double>(now.of(i)[c]) - before.of(i)[c]) / 3;
+    sum += opacity[i] * change;
+    weight += opacity[i];
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+}  // namespace
+
+Spread spreadOf(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+    return values[std::max<std::size_t>(rank, 1) - 1];
+  };
+  return {at(0.5), at(0.95)};
+}
+
+std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrackPoints& truth,
+                                         double most_m) {
+  const KdTree tree(truth.position_m);
+  std::vector<std::uint32_t> nearest(first.size(), kNoPoint);
+  parallelFor(first.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::vector<Neighbor> found = tree.nearest(first.position_m[i], 1);
+      if (!found.empty() && found[0].squared_distance <= most_m * most_m) nearest[i] = found[0].index;
+    }
+  });
+  return nearest;
+}
+
+Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrackPoints& first_truth,
+                const TrackPoints& truth, std::span<const std::uint32_t> nearest) {
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    const std::uint32_t p = nearest[i];
+    if (p == kNoPoint) continue;
+    const dmat3 turn = turnBetween(dvec3(first_truth.normal[p]), dvec3(truth.normal[p]));
+    const dvec3 offset = dvec3(first.position_m[i]) - dvec3(first_truth.position_m[p]);
+    const dvec3 expected = dvec3(truth.position_m[p]) + turn * offset;
+    distances.push_back(1000 * glm::length(dvec3(now.position_m[i]) - expected));
+  }
+  return spreadOf(std::move(distances));
+}
+
+bool isTracked(const GaussianCloud& before, const GaussianCloud& now) {
+  if (before.size() != now.size() || before.size() == 0) return false;
+  dvec3 center(0);
+  for (const vec3& p : before.position_m) center += dvec3(p) / static_cast<double>(before.size());
+  double square = 0;
+  std::vector<double> ways;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const dvec3 d = dvec3(before.position_m[i]) - center;
+    square += glm::dot(d, d) / static_cast<double>(before.size());
+    ways.push_back(glm::length(dvec3(now.position_m[i]) - dvec3(before.position_m[i])));
+  }
+  return spreadOf(std::move(ways)).median < kTrackedShare * std::sqrt(square);
+}
+
+double radianceFlicker(const GaussianCloud& before, const GaussianCloud& now) {
+  return changeOfDegree0(before.color, now.color, before.opacity);
+}
+
+double baseColorFlicker(const GaussianCloud& before, const Materials& before_materials,
+                        const Materials& now_materials) {
+  return changeOfDegree0(before_materials.base_color, now_materials.base_color, before.opacity);
+}
+
+std::optional<ViewFlicker> viewFlicker(const GBuffer& before, const GBuffer& now, const Camera& camera,
+                                       const TrackPoints& before_truth, const TrackPoints& truth,
+                                       double most_m) {
+  ViewFlicker f;
+  const bool materials = !before.base_color.empty() && !now.base_color.empty();
+  for (std::size_t i = 0; i < truth.position_m.size(); ++i) {
+    const auto a = seenAt(before, camera, before_truth.position_m[i], before_truth.normal[i], most_m);
+    const auto b = seenAt(now, camera, truth.position_m[i], truth.normal[i], most_m);
+    if (!a || !b) continue;
+    const float alpha_a = before.alpha.pixels[*a], alpha_b = now.alpha.pixels[*b];
+    f.radiance += meanChange(before.radiance.pixels[*a] / alpha_a, now.radiance.pixels[*b] / alpha_b);
+    if (materials)
+      f.base_color += meanChange(before.base_color.pixels[*a] / alpha_a, now.base_color.pixels[*b] / alpha_b);
+    ++f.points;
+  }
+  if (f.points < kFewestPoints) return std::nullopt;
+  f.radiance /= static_cast<double>(f.points);
+  f.base_color /= static_cast<double>(f.points);
+  return f;
+}
+
+}  // namespace beam

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drift and flicker of a take: does a Gaussian stay on the point of the skin where it started, and does what
+// is constant look constant. Drift needs true tracks, flicker along Gaussians needs nothing.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/scene/camera.h"
+#include "core/scene/gaussian_cloud.h"
+#include "core/scene/gbuffer.h"
+
+namespace beam {
+
+// Points of the true skin in one frame, world axes, the same order in all frames.
+struct TrackPoints {
+  std::vector<vec3> position_m;
+  std::vector<vec3> normal;  // unit
+};
+
+struct Spread {
+  double median = 0, p95 = 0;  // 95th percentile: the smallest value that 95 % do not exceed
+};
+Spread spreadOf(std::vector<double> values);  // zeros for none
+
+// Of every Gaussian of the take's first frame the index of its nearest true point; kNoPoint further than
+// `most_m` away: not of the skin.
+inline constexpr std::uint32_t kNoPoint = ~0u;
+std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrackPoints& truth,
+                                         double most_m = 0.03);
+
+// Millimetres |x_t - (p_t + R (x_0 - p_0))| over the Gaussians with a point: x Gaussian, p its true point, R
+// the smallest turn that takes the point's normal of the first frame to that of frame t. R leaves the twist
+// about the normal out, which is the true offset's tangential part (at most the spacing of the points) times
+// the twist.
+Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrackPoints& first_truth,
+                const TrackPoints& truth, std::span<const std::uint32_t> nearest);
+
+// Whether `now` is `before` moved on: the same number of Gaussians, and the median way of a Gaussian is below
+// a quarter of the cloud's root mean square radius (frames that were fitted alone share no order).
+bool isTracked(const GaussianCloud& before, const GaussianCloud& now);
+
+// Mean over Gaussians, weighted by opacity, of the mean absolute change of the channels of the direction-free
+// colour (SH degree 0): radiance sRGB-encoded, base colour linear, both in [0, 1].
+double radianceFlicker(const GaussianCloud& before, const GaussianCloud& now);
+double baseColorFlicker(const GaussianCloud& before, const Materials& before_materials,
+                        const Materials& now_materials);
+
+// The same in one view, along true points that both frames show (front-facing, inside the picture, depth
+// within `most_m` of the rendered depth): mean absolute change of the value at the nearest pixel, divided by
+// alpha. Nothing where fewer than 50 points are seen.
+struct ViewFlicker {
+  double radiance = 0, base_color = 0;  // base_color: 0 without materials
+  std::size_t points = 0;
+};
+std::optional<ViewFlicker> viewFlicker(const GBuffer& before, const GBuffer& now, const Camera& camera,
+                                       const TrackPoints& before_truth, const TrackPoints& truth,
+                                       double most_m = 0.01);
+
+}  // namespace beam
