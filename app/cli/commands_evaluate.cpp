@@ -8,13 +8,14 @@
 #include <memory>
 
 #include "app/cli/commands.h"
+#include "app/cli/evaluate_over_time.h"
 #include "app/cli/ground_truth.h"
 #include "app/cli/selection.h"
 #include "core/base/error.h"
 #include "core/io/file.h"
-#include "core/io/image_file.h"
-#include "core/method/evaluate.h"
+#include "core/method/score_views.h"
 #include "core/pipeline/frame_result.h"
+#include "core/scene/frame_views.h"
 #include "core/stages/render_channels.h"
 
 namespace beam {
@@ -79,78 +80,91 @@ RenderRequest requestFor(const Project& project, const GroundTruth& truth, const
   return r;
 }
 
-ScoreTable scoreAgainstTruth(const EvaluateFlags& flags, const Project& project, CommandContext& context) {
+// What a way of scoring found: the means, and every picture's and frame's own.
+struct Evaluated {
+  ScoreTable table;
+  PictureScores each;
+};
+
+Evaluated scoreAgainstTruth(const EvaluateFlags& flags, const Project& project, CommandContext& context) {
   const GroundTruth truth = openGroundTruth(flags.truth);
   Progress progress(context.stop, context.console.listener());
-  if (!flags.pictures.empty()) return scorePictures(truth, flags.pictures, progress);
+  Evaluated e;
+  if (!flags.pictures.empty()) {
+    e.table = scorePictures(truth, flags.pictures, progress, e.each);
+    return e;
+  }
   const ScratchFolder scratch;
   const auto device = makeDevice(flags.device);
+  const RenderRequest request = requestFor(project, truth, flags.frames, scratch.path());
   {
-    Progress part = progress.part(0.6, "render");
-    renderChannels(project, requestFor(project, truth, flags.frames, scratch.path()), *device, part);
+    Progress part = progress.part(0.5, "render");
+    renderChannels(project, request, *device, part);
   }
-  Progress part = progress.part(0.4, "score");
-  return scorePictures(truth, scratch.path(), part);
+  {
+    Progress part = progress.part(0.3, "score");
+    e.table = scorePictures(truth, scratch.path(), part, e.each);
+  }
+  Progress part = progress.part(0.2, "compare frames");
+  scoreMotion(project, request.frames, &truth, *device, part, e.each);
+  return e;
 }
 
-Planes planesOf(const Image<u8vec3>& image) {
-  Planes p(image.width, image.height, 3);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    for (int c = 0; c < 3; ++c) p.plane(c)[i] = image.pixels[i][c] / 255.0f;
-  }
-  return p;
+void addMean(const std::string& row, const std::vector<PictureScore>& scores, ScoreTable& table) {
+  if (scores.empty()) return;
+  Scores mean;
+  for (const PictureScore& s : scores)
+    mean["psnr"] += s.psnr, mean["ssim"] += s.ssim, mean["psnr_mask"] += s.psnr_mask;
+  for (auto& [key, value] : mean) value /= static_cast<double>(scores.size());
+  mean["pictures"] = static_cast<double>(scores.size());
+  table.emplace_back(row, mean);
 }
 
-// Held-out photographs against the same files that render writes.
-ScoreTable scoreHeldOut(const EvaluateFlags& flags, const Project& project, CommandContext& context) {
+// Held-out photographs at their full size, whichever cameras have one of the frame.
+Evaluated scoreHeldOut(const EvaluateFlags& flags, const Project& project, CommandContext& context) {
   const CaptureSet& capture = project.capture();
-  const ScratchFolder scratch;
-  RenderRequest r;
-  r.out = scratch.path();
-  r.channels = {"rgb"};
-  r.frames = selectSolvedFrames(flags.frames, project);
-  for (std::size_t v = 0; v < capture.views.size(); ++v) {
-    const ViewIndex view{static_cast<std::int32_t>(v)};
-    if (capture.views[v].split == Split::Test && capture.source->has(view, r.frames.front()))
-      r.views.push_back(view);
+  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, project);
+  const auto device = makeDevice(flags.device);
+  Progress progress(context.stop, context.console.listener());
+  Evaluated e;
+  std::vector<PictureScore> all;
+  for (const FrameIndex frame : frames) {
+    Progress part = progress.part(0.8 / static_cast<double>(frames.size()), "score");
+    const std::optional<FrameResult> result = loadFrameResult(project, frame);
+    if (!result) {
+      throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first",
+                                                 capture.frames[static_cast<std::size_t>(frame.value)]));
+    }
+    for (const ViewScore& v : scoreViews(loadFrameViews(capture, frame, Split::Test, 1, part), true,
+                                         result->cloud, *device, part)) {
+      Scores& own = e.each[capture.frames[static_cast<std::size_t>(frame.value)]][v.camera];
+      own["rgb.psnr"] = v.score.psnr;
+      own["rgb.ssim"] = v.score.ssim;
+      own["rgb.psnr_mask"] = v.score.psnr_mask;
+      all.push_back(v.score);
+    }
   }
-  if (r.views.empty()) {
+  if (all.empty()) {
     throw Error(Error::Kind::Data,
                 "no held-out photographs: name a data set with --ground-truth, or process the capture "
                 "with --hold-out");
   }
-  const auto device = makeDevice(flags.device);
-  Progress progress(context.stop, context.console.listener());
-  renderChannels(project, r, *device, progress);
-  Scores mean;
-  double n = 0;
-  for (const ViewIndex view : r.views) {
-    for (const FrameIndex frame : r.frames) {
-      if (!capture.source->has(view, frame)) continue;
-      const Image<u8vec3> photo = capture.source->photo(view, frame);
-      Image<std::uint8_t> mask = capture.source->mask(view, frame);
-      if (mask.empty()) mask = Image<std::uint8_t>(photo.width, photo.height, 255);
-      const fs::path file =
-          scratch.path() / "rgb" / capture.views[view.value].name / (capture.frames[frame.value] + ".png");
-      const PictureScore s = scorePicture(planesOf(readPhoto(file)), planesOf(photo), mask);
-      mean["psnr"] += s.psnr, mean["ssim"] += s.ssim, mean["psnr_mask"] += s.psnr_mask;
-      ++n;
-    }
-  }
-  for (auto& [key, value] : mean) value /= n;
-  mean["pictures"] = n;
-  return {{"rgb_held_out", mean}};
+  addMean("rgb_held_out", all, e.table);
+  Progress part = progress.part(0.2, "compare frames");
+  scoreMotion(project, frames, nullptr, *device, part, e.each);
+  return e;
 }
 
 int runEvaluate(const EvaluateFlags& flags, CommandContext& context) {
   const Project project = Project::open(flags.project, context.services.pipeline);
-  const ScoreTable table = flags.truth.empty() ? scoreHeldOut(flags, project, context)
-                                               : scoreAgainstTruth(flags, project, context);
+  Evaluated e = flags.truth.empty() ? scoreHeldOut(flags, project, context)
+                                    : scoreAgainstTruth(flags, project, context);
+  for (auto& row : motionTable(e.each)) e.table.push_back(std::move(row));
   context.console.endProgress();
-  context.console.print(scoreText(table));
-  const std::string json = scoreJson(table);
-  if (!flags.json.empty()) writeFileAtomically(flags.json, json + "\n");
-  if (!project.readOnly()) writeFileAtomically(project.folder() / "evaluation.json", json + "\n");
+  context.console.print(scoreText(e.table));
+  if (!flags.json.empty()) writeFileAtomically(flags.json, scoreJson(e.table, e.each) + "\n");
+  if (!project.readOnly())
+    writeFileAtomically(project.folder() / "evaluation.json", scoreJson(e.table) + "\n");
   return 0;
 }
 
@@ -165,7 +179,8 @@ void addEvaluateCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--pictures", flags->pictures,
                       "Score the pictures that render wrote here instead of new ones");
   command->add_option("--frames", flags->frames, "Frames: 0-7, 1,5, 1-9x2 or all that are solved");
-  command->add_option("--json", flags->json, "Also write the scores to this file");
+  command->add_option("--json", flags->json,
+                      "Also write the scores to this file, with every frame's and camera's own");
   addDeviceFlags(*command, flags->device);
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runEvaluate(*flags, context); }; });

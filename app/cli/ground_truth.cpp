@@ -84,6 +84,7 @@ Planes clipped(Planes p) {
 }
 
 struct Triple {
+  std::string camera, frame;
   Planes prediction, truth;
   Image<std::uint8_t> mask;
 };
@@ -96,7 +97,8 @@ std::vector<Triple> load(const GroundTruth& t, const fs::path& pictures, const s
       const auto p = findPicture(pictures / what, camera, frame),
                  g = findPicture(t.folder / "gt" / what, camera, frame);
       if (!p || !g) continue;
-      Triple triple{reader(*p), reader(*g), readMask(t.folder / "gt/mask" / camera / (frame + ".png"))};
+      Triple triple{camera, frame, reader(*p), reader(*g),
+                    readMask(t.folder / "gt/mask" / camera / (frame + ".png"))};
       if (triple.prediction.width != triple.truth.width || triple.prediction.height != triple.truth.height) {
         throw Error(Error::Kind::Data,
                     fmt::format("\"{}\": expected {} x {} pixels as the ground truth has, found {} x {}",
@@ -110,7 +112,8 @@ std::vector<Triple> load(const GroundTruth& t, const fs::path& pictures, const s
 }
 
 template <class Prepare>
-Scores meanScores(const std::vector<Triple>& triples, Prepare&& prepare) {
+Scores meanScores(const std::string& what, const std::vector<Triple>& triples, PictureScores& each,
+                  Prepare&& prepare) {
   Scores s;
   const auto n = static_cast<double>(triples.size());
   for (const Triple& t : triples) {
@@ -118,6 +121,10 @@ Scores meanScores(const std::vector<Triple>& triples, Prepare&& prepare) {
     s["psnr"] += p.psnr / n;
     s["ssim"] += p.ssim / n;
     s["psnr_mask"] += p.psnr_mask / n;
+    Scores& own = each[t.frame][t.camera];
+    own[what + ".psnr"] = p.psnr;
+    own[what + ".ssim"] = p.ssim;
+    own[what + ".psnr_mask"] = p.psnr_mask;
   }
   s["pictures"] = n;
   return s;
@@ -139,18 +146,20 @@ dvec3 channelScale(const std::vector<Triple>& triples) {
   return product / glm::max(square, dvec3(1e-12));
 }
 
-void scoreColors(const GroundTruth& t, const fs::path& pictures, const std::string& what, ScoreTable& out) {
+void scoreColors(const GroundTruth& t, const fs::path& pictures, const std::string& what, ScoreTable& out,
+                 PictureScores& each) {
   const std::vector<Triple> triples = load(t, pictures, what, asLinear);
   if (triples.empty()) return;
-  out.emplace_back(what, meanScores(triples, [](const Planes& p, bool) { return encoded(p); }));
+  out.emplace_back(what, meanScores(what, triples, each, [](const Planes& p, bool) { return encoded(p); }));
   if (what == "rgb") return;
   const dvec3 scale = channelScale(triples);
-  out.emplace_back(what + "_scaled", meanScores(triples, [&](const Planes& p, bool prediction) {
+  out.emplace_back(what + "_scaled",
+                   meanScores(what + "_scaled", triples, each, [&](const Planes& p, bool prediction) {
                      return encoded(p, prediction ? scale : dvec3(1));
                    }));
 }
 
-void scoreMeshes(const GroundTruth& t, const fs::path& pictures, ScoreTable& out) {
+void scoreMeshes(const GroundTruth& t, const fs::path& pictures, ScoreTable& out, PictureScores& each) {
   Scores sum;
   double n = 0;
   for (const std::string& frame : t.gt_frames) {
@@ -160,6 +169,7 @@ void scoreMeshes(const GroundTruth& t, const fs::path& pictures, ScoreTable& out
     sum["chamfer_mm"] += c.chamfer_mm;
     sum["pred_to_gt_mm"] += c.prediction_to_truth_mm;
     sum["gt_to_pred_mm"] += c.truth_to_prediction_mm;
+    each[frame][""]["mesh.chamfer_mm"] = c.chamfer_mm;
     ++n;
   }
   if (n == 0) return;
@@ -186,6 +196,8 @@ std::vector<std::string> strings(const nlohmann::json& j, const char* key) {
   return j.contains(key) ? j[key].get<std::vector<std::string>>() : std::vector<std::string>{};
 }
 
+std::size_t widthOf(std::string_view column) { return std::max<std::size_t>(15, column.size() + 2); }
+
 }  // namespace
 
 GroundTruth openGroundTruth(const fs::path& folder) {
@@ -204,32 +216,41 @@ GroundTruth openGroundTruth(const fs::path& folder) {
   }
 }
 
-ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progress& progress) {
+ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progress& progress,
+                         PictureScores& each) {
   ScoreTable out;
   progress.expect(static_cast<std::int64_t>(7 + t.environments.size()));
-  for (const char* what : {"rgb", "base_color"}) scoreColors(t, pictures, what, out), progress.step();
+  for (const char* what : {"rgb", "base_color"}) scoreColors(t, pictures, what, out, each), progress.step();
   for (const char* what : {"ao", "roughness"}) {
     const std::vector<Triple> triples = load(t, pictures, what, asValue);
     if (!triples.empty())
-      out.emplace_back(what, meanScores(triples, [](const Planes& p, bool) { return clipped(p); }));
+      out.emplace_back(what,
+                       meanScores(what, triples, each, [](const Planes& p, bool) { return clipped(p); }));
     progress.step();
   }
   if (const std::vector<Triple> triples = load(t, pictures, "normal", asNormal); !triples.empty()) {
     Scores s{{"angle_deg", 0}, {"pictures", static_cast<double>(triples.size())}};
-    for (const Triple& n : triples)
-      s["angle_deg"] += normalErrorDeg(n.prediction, n.truth, n.mask) / s["pictures"];
+    for (const Triple& n : triples) {
+      const double angle = normalErrorDeg(n.prediction, n.truth, n.mask);
+      each[n.frame][n.camera]["normal.angle_deg"] = angle;
+      s["angle_deg"] += angle / s["pictures"];
+    }
     out.emplace_back("normal", s);
   }
   progress.step();
   if (const std::vector<Triple> triples = load(t, pictures, "depth", asValue); !triples.empty()) {
     Scores s{{"mae_mm", 0}, {"pictures", static_cast<double>(triples.size())}};
-    for (const Triple& d : triples)
-      s["mae_mm"] += depthErrorMm(d.prediction, d.truth, d.mask) / s["pictures"];
+    for (const Triple& d : triples) {
+      const double error = depthErrorMm(d.prediction, d.truth, d.mask);
+      each[d.frame][d.camera]["depth.mae_mm"] = error;
+      s["mae_mm"] += error / s["pictures"];
+    }
     out.emplace_back("depth", s);
   }
   progress.step();
-  for (const std::string& e : t.environments) scoreColors(t, pictures, "relight_" + e, out), progress.step();
-  scoreMeshes(t, pictures, out);
+  for (const std::string& e : t.environments)
+    scoreColors(t, pictures, "relight_" + e, out, each), progress.step();
+  scoreMeshes(t, pictures, out, each);
   progress.step();
   addRelightMean(out, false);
   addRelightMean(out, true);
@@ -243,10 +264,21 @@ ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progres
 }
 
 std::string scoreText(const ScoreTable& table) {
-  static const std::vector<std::pair<const char*, const char*>> kColumns = {
-      {"psnr", "{:.3f}"},          {"ssim", "{:.4f}"},          {"psnr_mask", "{:.3f}"},
-      {"angle_deg", "{:.3f}"},     {"mae_mm", "{:.3f}"},        {"chamfer_mm", "{:.3f}"},
-      {"pred_to_gt_mm", "{:.3f}"}, {"gt_to_pred_mm", "{:.3f}"}, {"pictures", "{:.0f}"}};
+  static const std::vector<std::pair<const char*, const char*>> kColumns = {{"psnr", "{:.3f}"},
+                                                                            {"ssim", "{:.4f}"},
+                                                                            {"psnr_mask", "{:.3f}"},
+                                                                            {"angle_deg", "{:.3f}"},
+                                                                            {"mae_mm", "{:.3f}"},
+                                                                            {"chamfer_mm", "{:.3f}"},
+                                                                            {"pred_to_gt_mm", "{:.3f}"},
+                                                                            {"gt_to_pred_mm", "{:.3f}"},
+                                                                            {"median_mm", "{:.3f}"},
+                                                                            {"p95_mm", "{:.3f}"},
+                                                                            {"radiance", "{:.5f}"},
+                                                                            {"base_color", "{:.5f}"},
+                                                                            {"gaussian_radiance", "{:.5f}"},
+                                                                            {"gaussian_base_color", "{:.5f}"},
+                                                                            {"pictures", "{:.0f}"}};
   std::vector<std::pair<const char*, const char*>> columns;
   for (const auto& c : kColumns) {
     if (std::any_of(table.begin(), table.end(),
@@ -254,13 +286,14 @@ std::string scoreText(const ScoreTable& table) {
       columns.push_back(c);
   }
   std::string text = fmt::format("{:<28}", "map");
-  for (const auto& c : columns) text += fmt::format("{:>15}", c.first);
+  for (const auto& c : columns) text += fmt::format("{:>{}}", c.first, widthOf(c.first));
   for (const auto& [name, scores] : table) {
     text += fmt::format("\n{:<28}", name);
     for (const auto& [key, format] : columns) {
       const auto found = scores.find(key);
-      text += fmt::format("{:>15}",
-                          found == scores.end() ? "-" : fmt::format(fmt::runtime(format), found->second));
+      text += fmt::format("{:>{}}",
+                          found == scores.end() ? "-" : fmt::format(fmt::runtime(format), found->second),
+                          widthOf(key));
     }
   }
   return text;

@@ -22,9 +22,13 @@ struct GroundTruth {
 // Throws Error{Data} when the folder has no dataset.json or no gt/.
 GroundTruth openGroundTruth(const std::filesystem::path& folder);
 
+// By frame, then camera ("" for scores of the whole frame), then name: "rgb.psnr", "mesh.chamfer_mm".
+using PictureScores = std::map<std::string, std::map<std::string, Scores>>;
+
 // Scores what is in `pictures` (missing pictures are left out); throws Error{Data} when nothing can be
-// scored.
-ScoreTable scorePictures(const GroundTruth& truth, const std::filesystem::path& pictures, Progress& progress);
+// scored. `each` also gets every picture's own scores.
+ScoreTable scorePictures(const GroundTruth& truth, const std::filesystem::path& pictures, Progress& progress,
+                         PictureScores& each);
 
 std::string scoreText(const ScoreTable& table);
 std::string scoreJson(const ScoreTable& table);

@@ -76,8 +76,7 @@ Spread spreadOf(std::vector<double> values) {
   return {at(0.5), at(0.95)};
 }
 
-std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrackPoints& truth,
-                                         double most_m) {
+std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrueSkin& truth, double most_m) {
   const KdTree tree(truth.position_m);
   std::vector<std::uint32_t> nearest(first.size(), kNoPoint);
   parallelFor(first.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -89,8 +88,8 @@ std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const Track
   return nearest;
 }
 
-Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrackPoints& first_truth,
-                const TrackPoints& truth, std::span<const std::uint32_t> nearest) {
+Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrueSkin& first_truth,
+                const TrueSkin& truth, std::span<const std::uint32_t> nearest) {
   std::vector<double> distances;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     const std::uint32_t p = nearest[i];
@@ -127,8 +126,7 @@ double baseColorFlicker(const GaussianCloud& before, const Materials& before_mat
 }
 
 std::optional<ViewFlicker> viewFlicker(const GBuffer& before, const GBuffer& now, const Camera& camera,
-                                       const TrackPoints& before_truth, const TrackPoints& truth,
-                                       double most_m) {
+                                       const TrueSkin& before_truth, const TrueSkin& truth, double most_m) {
   ViewFlicker f;
   const bool materials = !before.base_color.empty() && !now.base_color.empty();
   for (std::size_t i = 0; i < truth.position_m.size(); ++i) {

@@ -15,7 +15,7 @@
 namespace beam {
 
 // Points of the true skin in one frame, world axes, the same order in all frames.
-struct TrackPoints {
+struct TrueSkin {
   std::vector<vec3> position_m;
   std::vector<vec3> normal;  // unit
 };
@@ -28,15 +28,15 @@ Spread spreadOf(std::vector<double> values);  // zeros for none
 // Of every Gaussian of the take's first frame the index of its nearest true point; kNoPoint further than
 // `most_m` away: not of the skin.
 inline constexpr std::uint32_t kNoPoint = ~0u;
-std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrackPoints& truth,
+std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrueSkin& truth,
                                          double most_m = 0.03);
 
 // Millimetres |x_t - (p_t + R (x_0 - p_0))| over the Gaussians with a point: x Gaussian, p its true point, R
 // the smallest turn that takes the point's normal of the first frame to that of frame t. R leaves the twist
 // about the normal out, which is the true offset's tangential part (at most the spacing of the points) times
 // the twist.
-Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrackPoints& first_truth,
-                const TrackPoints& truth, std::span<const std::uint32_t> nearest);
+Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrueSkin& first_truth,
+                const TrueSkin& truth, std::span<const std::uint32_t> nearest);
 
 // Whether `now` is `before` moved on: the same number of Gaussians, and the median way of a Gaussian is below
 // a quarter of the cloud's root mean square radius (frames that were fitted alone share no order).
@@ -56,7 +56,7 @@ struct ViewFlicker {
   std::size_t points = 0;
 };
 std::optional<ViewFlicker> viewFlicker(const GBuffer& before, const GBuffer& now, const Camera& camera,
-                                       const TrackPoints& before_truth, const TrackPoints& truth,
+                                       const TrueSkin& before_truth, const TrueSkin& truth,
                                        double most_m = 0.01);
 
 }  // namespace beam

@@ -104,5 +104,18 @@ TEST_F(Report, AHeldOutPhotographChangesTheScoreAndNothingElse) {
   EXPECT_THAT(said.err, HasSubstr("frame 000001 surface.score: reused"));
 }
 
+TEST_F(Report, EvaluateScoresAHeldOutCameraThatDropsTheFirstFrame) {
+  fs::copy(SampleHouse::capture(), at("capture"), fs::copy_options::recursive);
+  fs::remove(at("capture") / "images/cam02/000000.png");
+  ASSERT_EQ(process(at("capture")).code, 0);
+  const Said said = beam({"evaluate", at("p.beam").string(), "--json", at("scores.json").string()});
+  ASSERT_EQ(said.code, 0) << said.err;
+  const std::string json = textOf(at("scores.json"));
+  EXPECT_THAT(json, HasSubstr("\"pictures\": 1.0"));
+  EXPECT_THAT(json, HasSubstr("\"over_time\""));
+  EXPECT_THAT(json, HasSubstr("\"000001\""));
+  EXPECT_THAT(json, HasSubstr("\"cam02\""));
+}
+
 }  // namespace
 }  // namespace beam::testing

@@ -12,8 +12,8 @@ namespace beam::testing {
 namespace {
 
 // A sphere of points with their normals.
-TrackPoints sphere() {
-  TrackPoints t;
+TrueSkin sphere() {
+  TrueSkin t;
   for (int i = 0; i < 500; ++i) {
     const float z = 1 - (2 * static_cast<float>(i) + 1) / 500, r = std::sqrt(1 - z * z);
     const float phi = 2.39996323f * static_cast<float>(i);
@@ -23,15 +23,15 @@ TrackPoints sphere() {
   return t;
 }
 
-TrackPoints moved(const TrackPoints& t, const quat& turn, const vec3& shift) {
-  TrackPoints m;
+TrueSkin moved(const TrueSkin& t, const quat& turn, const vec3& shift) {
+  TrueSkin m;
   for (const vec3& p : t.position_m) m.position_m.push_back(turn * p + shift);
   for (const vec3& n : t.normal) m.normal.push_back(turn * n);
   return m;
 }
 
 // Gaussians 4 mm above the points, every one with colours of its own.
-GaussianCloud skinOn(const TrackPoints& t) {
+GaussianCloud skinOn(const TrueSkin& t) {
   GaussianCloud c;
   const RandomStream random(3);
   for (std::size_t i = 0; i < t.position_m.size(); ++i) {
@@ -49,14 +49,14 @@ const quat kTurn = glm::angleAxis(0.7f, glm::normalize(vec3(1, 2, 3)));
 const vec3 kShift(0.03f, -0.01f, 0.02f);
 
 TEST(Drift, IsZeroForExactTracks) {
-  const TrackPoints first = sphere(), now = moved(first, kTurn, kShift);
+  const TrueSkin first = sphere(), now = moved(first, kTurn, kShift);
   const Spread s = drift_mm(skinOn(first), skinOn(now), first, now, nearestPoints(skinOn(first), first));
   EXPECT_NEAR(s.median, 0, 1e-3);
   EXPECT_NEAR(s.p95, 0, 1e-3);
 }
 
 TEST(Drift, IsTheWayThatASlippedGaussianIsOff) {
-  const TrackPoints first = sphere(), now = moved(first, kTurn, kShift);
+  const TrueSkin first = sphere(), now = moved(first, kTurn, kShift);
   GaussianCloud slipped = skinOn(now);
   for (std::size_t i = 0; i < slipped.size(); i += 10) slipped.position_m[i] += vec3(0.006f, 0, 0);
   const Spread s = drift_mm(skinOn(first), slipped, first, now, nearestPoints(skinOn(first), first));
@@ -65,7 +65,7 @@ TEST(Drift, IsTheWayThatASlippedGaussianIsOff) {
 }
 
 TEST(Drift, LeavesOutGaussiansThatAreNotOfTheSkin) {
-  const TrackPoints first = sphere();
+  const TrueSkin first = sphere();
   GaussianCloud cloud = skinOn(first), later = cloud;
   cloud.position_m[7] = vec3(0.5f), later.position_m[7] = vec3(-0.5f);
   const std::vector<std::uint32_t> nearest = nearestPoints(cloud, first);
@@ -100,7 +100,7 @@ TEST(Flicker, IsZeroForConstantColoursAndTheChangeOtherwise) {
 struct Wall {
   Camera camera;
   GBuffer g;
-  TrackPoints points;
+  TrueSkin points;
   Wall() {
     camera.width = camera.height = 32;
     camera.intrinsics = {32, 32, 16, 16};

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/evaluate_over_time.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/cli/quality_history.h"
+#include "core/base/error.h"
+#include "core/io/ply_file.h"
+#include "core/method/evaluate_motion.h"
+#include "core/pipeline/frame_result.h"
+#include "core/render/deferred.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::optional<TrueSkin> readTracks(const fs::path& file, const dmat3& world_from_capture) {
+  if (!fs::exists(file)) return std::nullopt;
+  const std::vector<PlyElement> elements = readPly(file);
+  const PlyElement* vertex = findElement(elements, "vertex");
+  std::vector<std::size_t> columns;
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) {
+    const auto column = vertex ? vertex->column(name) : std::nullopt;
+    if (!column) {
+      throw Error(Error::Kind::Data, fmt::format("\"{}\": expected vertices with x y z nx ny nz, found no {}",
+                                                 file.string(), name));
+    }
+    columns.push_back(*column);
+  }
+  TrueSkin skin;
+  for (std::size_t i = 0; i < vertex->count; ++i) {
+    const float* row = vertex->row(i);
+    const dvec3 p(row[columns[0]], row[columns[1]], row[columns[2]]);
+    const dvec3 n(row[columns[3]], row[columns[4]], row[columns[5]]);
+    skin.position_m.emplace_back(world_from_capture * p);
+    skin.normal.emplace_back(world_from_capture * n);
+  }
+  return skin;
+}
+
+// A frame with what its successor is compared to.
+struct Moment {
+  FrameIndex frame;
+  FrameResult result;
+  std::optional<TrueSkin> skin;
+  std::vector<GBuffer> views;  // of the test cameras; only with a skin
+};
+
+class MotionScorer {
+ public:
+  MotionScorer(const Project& project, const GroundTruth* truth, ComputeDevice& device, PictureScores& each)
+      : project_(project), truth_(truth), renderer_(device), each_(each) {
+    if (!truth) return;
+    for (const View& view : project.capture().views) {
+      const auto& tests = truth->test_cameras;
+      if (std::find(tests.begin(), tests.end(), view.name) != tests.end()) cameras_.push_back(view.camera);
+    }
+  }
+
+  void frame(FrameIndex index) {
+    std::optional<Moment> now = momentOf(index);
+    if (!now) return before_.reset();
+    const bool follows = before_ && before_->frame.value + 1 == index.value;
+    const bool tracked = follows && isTracked(before_->result.cloud, now->result.cloud);
+    if (!tracked) startTake(*now);
+    if (follows && sameSkin(before_->skin, now->skin)) alongPoints(*now);
+    if (tracked) alongGaussians(*now);
+    before_ = std::move(now);
+  }
+
+ private:
+  std::optional<Moment> momentOf(FrameIndex index) {
+    std::optional<FrameResult> result = loadFrameResult(project_, index);
+    if (!result) return std::nullopt;
+    Moment m{index, std::move(*result), std::nullopt, {}};
+    if (!truth_) return m;
+    m.skin = readTracks(truth_->folder / "gt/tracks" / (name(index) + ".ply"),
+                        worldFromCapture(project_.capture().up));
+    if (!m.skin) return m;
+    for (const Camera& camera : cameras_) {
+      m.views.push_back(
+          renderer_.render(m.result.cloud, m.result.materials ? &*m.result.materials : nullptr, camera));
+    }
+    return m;
+  }
+
+  static bool sameSkin(const std::optional<TrueSkin>& a, const std::optional<TrueSkin>& b) {
+    return a && b && a->position_m.size() == b->position_m.size();
+  }
+
+  void startTake(const Moment& m) {
+    first_ = m.result.cloud;
+    first_skin_ = m.skin;
+    nearest_.clear();
+    if (m.skin) nearest_ = nearestPoints(first_, *m.skin);
+  }
+
+  void alongGaussians(const Moment& now) {
+    Scores& s = scores(now);
+    s["flicker.gaussian_radiance"] = radianceFlicker(before_->result.cloud, now.result.cloud);
+    const auto &a = before_->result.materials, &b = now.result.materials;
+    if (a && b) s["flicker.gaussian_base_color"] = baseColorFlicker(before_->result.cloud, *a, *b);
+    if (nearest_.empty() || !sameSkin(first_skin_, now.skin)) return;
+    const Spread drift = drift_mm(first_, now.result.cloud, *first_skin_, *now.skin, nearest_);
+    s["drift.median_mm"] = drift.median;
+    s["drift.p95_mm"] = drift.p95;
+  }
+
+  void alongPoints(const Moment& now) {
+    ViewFlicker sum;
+    double n = 0;
+    for (std::size_t v = 0; v < cameras_.size(); ++v) {
+      const auto f = viewFlicker(before_->views[v], now.views[v], cameras_[v], *before_->skin, *now.skin);
+      if (!f) continue;
+      sum.radiance += f->radiance, sum.base_color += f->base_color, ++n;
+    }
+    if (n == 0) return;
+    scores(now)["flicker.radiance"] = sum.radiance / n;
+    if (before_->result.materials && now.result.materials)
+      scores(now)["flicker.base_color"] = sum.base_color / n;
+  }
+
+  const std::string& name(FrameIndex f) const {
+    return project_.capture().frames[static_cast<std::size_t>(f.value)];
+  }
+  Scores& scores(const Moment& m) { return each_[name(m.frame)][""]; }
+
+  const Project& project_;
+  const GroundTruth* truth_;
+  GBufferRenderer renderer_;
+  PictureScores& each_;
+  std::vector<Camera> cameras_;
+  std::optional<Moment> before_;
+  GaussianCloud first_;
+  std::optional<TrueSkin> first_skin_;
+  std::vector<std::uint32_t> nearest_;
+};
+
+// Means over the cameras; scores of the whole frame as they are.
+Scores meanOfCameras(const std::map<std::string, Scores>& cameras) {
+  std::map<std::string, std::pair<double, double>> sums;
+  for (const auto& [camera, scores] : cameras) {
+    for (const auto& [name, value] : scores) sums[name].first += value, ++sums[name].second;
+  }
+  Scores mean;
+  for (const auto& [name, sum] : sums) mean[name] = sum.first / sum.second;
+  return mean;
+}
+
+Json worstOf(const PictureScores& each) {
+  struct Worst {
+    double value = 0;
+    std::string frame, camera;
+  };
+  std::map<std::string, Worst> worst;
+  for (const auto& [frame, cameras] : each) {
+    for (const auto& [camera, scores] : cameras) {
+      for (const auto& [name, value] : scores) {
+        const auto found = worst.find(name);
+        const bool more = betterOf(name) == Better::More;
+        if (found == worst.end() || (more ? value < found->second.value : value > found->second.value))
+          worst[name] = {value, frame, camera};
+      }
+    }
+  }
+  Json j = Json::object();
+  for (const auto& [name, w] : worst) {
+    j[name] = {{"value", w.value}, {"frame", w.frame}};
+    if (!w.camera.empty()) j[name]["camera"] = w.camera;
+  }
+  return j;
+}
+
+}  // namespace
+
+void scoreMotion(const Project& project, const std::vector<FrameIndex>& frames, const GroundTruth* truth,
+                 ComputeDevice& device, Progress& progress, PictureScores& each) {
+  progress.expect(static_cast<std::int64_t>(frames.size()));
+  MotionScorer scorer(project, truth, device, each);
+  for (const FrameIndex frame : frames) {
+    scorer.frame(frame);
+    progress.step();
+  }
+}
+
+ScoreTable motionTable(const PictureScores& each) {
+  ScoreTable table;
+  for (const std::string row : {"drift", "flicker"}) {
+    std::map<std::string, Scores> by_frame;
+    for (const auto& [frame, cameras] : each) {
+      const auto whole = cameras.find("");
+      if (whole == cameras.end()) continue;
+      for (const auto& [name, value] : whole->second) {
+        if (name.starts_with(row + ".")) by_frame[frame][name.substr(row.size() + 1)] = value;
+      }
+    }
+    if (!by_frame.empty()) table.emplace_back(row, meanOfCameras(by_frame));
+  }
+  return table;
+}
+
+std::string scoreJson(const ScoreTable& table, const PictureScores& each) {
+  Json j = Json::parse(scoreJson(table));
+  Json frames = Json::object();
+  for (const auto& [frame, cameras] : each) {
+    frames[frame]["scores"] = meanOfCameras(cameras);
+    for (const auto& [camera, scores] : cameras) {
+      if (!camera.empty()) frames[frame]["cameras"][camera] = scores;
+    }
+  }
+  j["over_time"] = {{"frames", std::move(frames)}, {"worst", worstOf(each)}};
+  return j.dump(1);
+}
+
+}  // namespace beam

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores frame by frame: pictures, and what happens between frames (drift, flicker).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/cli/ground_truth.h"
+#include "core/pipeline/project.h"
+#include "core/render/device.h"
+
+namespace beam {
+
+// Adds to every frame that follows its neighbour, under camera "":
+//   "flicker.gaussian_radiance", "flicker.gaussian_base_color"  along tracked Gaussians (evaluate_motion.h)
+// and, where `truth` (may be null) has gt/tracks/<frame>.ply (x y z nx ny nz, metres, the capture's axes, the
+// same points in all frames):
+//   "drift.median_mm", "drift.p95_mm"            against the first frame of the take
+//   "flicker.radiance", "flicker.base_color"     in rendered maps of the test cameras, along the true points;
+//   mean
+//                                                over cameras
+// A take is a run of neighbouring frames that are tracked.
+void scoreMotion(const Project& project, const std::vector<FrameIndex>& frames, const GroundTruth* truth,
+                 ComputeDevice& device, Progress& progress, PictureScores& each);
+
+// Means over frames of what scoreMotion found, as rows "drift" and "flicker"; nothing where it found nothing.
+ScoreTable motionTable(const PictureScores& each);
+
+// The table, and "over_time": by frame its scores (means over its cameras) and its cameras' own; "worst" by
+// score.
+std::string scoreJson(const ScoreTable& table, const PictureScores& each);
+
+}  // namespace beam
