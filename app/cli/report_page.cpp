@@ -303,22 +303,22 @@ class PageWriter {
   void evaluation() {
     if (page_.evaluation.empty()) return;
     section("Last evaluation", "As beam evaluate wrote it, means over pictures.");
-    std::vector<std::string> columns;
-    for (const auto& [map, scores] : page_.evaluation) {
-      for (const auto& [name, value] : scores) {
-        if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
-      }
-    }
-    out_ += "<table><thead><tr><th>Map</th>";
-    for (const std::string& c : columns) out_ += fmt::format("<th>{}</th>", escapedHtml(c));
-    out_ += "</tr></thead>\n<tbody>";
+    static constexpr std::pair<const char*, int> kColumns[] = {
+        {"psnr", 2}, {"ssim", 4}, {"psnr_mask", 2}, {"pictures", 0}};
+    out_ += "<table>" + head({"Map", "PSNR, dB", "SSIM", "PSNR in mask", "Pictures", "Other figures"}) +
+            "<tbody>";
     for (const auto& [map, scores] : page_.evaluation) {
       out_ += "<tr>" + cell(map, "name");
-      for (const std::string& c : columns) {
-        const auto found = scores.find(c);
-        out_ += cell(found == scores.end() ? "-" : figureText(found->second), "n");
+      std::map<std::string, double> others = scores;
+      for (const auto& [name, digits] : kColumns) {
+        const auto found = scores.find(name);
+        out_ += found == scores.end() ? cell("-", "n") : number(found->second, digits);
+        others.erase(name);
       }
-      out_ += "</tr>\n";
+      std::string words;
+      for (const auto& [name, value] : others)
+        words += fmt::format("{}{} {}", words.empty() ? "" : ", ", name, figureText(value));
+      out_ += cell(words) + "</tr>\n";
     }
     out_ += "</tbody></table>\n";
   }

@@ -107,7 +107,11 @@ class ChartWriter {
     const auto fitting = static_cast<std::size_t>(
         std::max(1.0, (chart_.width - kLeft - kRight) / (7.0 * static_cast<double>(widest) + 16)));
     const std::size_t every = (n + fitting - 1) / fitting;
-    for (std::size_t f = 0; f < n; f += every) text("label", x(f), bottom + 15, "middle", chart_.frames[f]);
+    for (std::size_t f = 0; f < n; f += every) {
+      const bool at_border = n > 1 && f + 1 == n;
+      text("label", at_border ? chart_.width - 2.0 : x(f), bottom + 15, at_border ? "end" : "middle",
+           chart_.frames[f]);
+    }
   }
 
   void series(std::size_t i) {
