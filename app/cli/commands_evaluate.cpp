@@ -162,9 +162,11 @@ int runEvaluate(const EvaluateFlags& flags, CommandContext& context) {
   for (auto& row : motionTable(e.each)) e.table.push_back(std::move(row));
   context.console.endProgress();
   context.console.print(scoreText(e.table));
-  if (!flags.json.empty()) writeFileAtomically(flags.json, scoreJson(e.table, e.each) + "\n");
-  if (!project.readOnly())
-    writeFileAtomically(project.folder() / "evaluation.json", scoreJson(e.table) + "\n");
+  const std::string frames = scoreJson(e.table, e.each) + "\n";
+  if (!flags.json.empty()) writeFileAtomically(flags.json, frames);
+  if (project.readOnly()) return 0;
+  writeFileAtomically(project.folder() / "evaluation.json", scoreJson(e.table) + "\n");
+  writeFileAtomically(project.folder() / kEvaluationFramesFile, frames);
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.h"
+#include "app/cli/evaluate_over_time.h"
 #include "app/cli/report_page.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
@@ -99,6 +100,44 @@ std::vector<std::pair<std::string, std::map<std::string, double>>> evaluationOf(
   return table;
 }
 
+void addScore(QualityHistory& history, const std::string& frame, const std::string& name, double value) {
+  const auto found = std::find_if(history.frames.begin(), history.frames.end(),
+                                  [&](const FrameQuality& q) { return q.name == frame; });
+  if (found != history.frames.end()) found->scores["evaluate." + name] = value;
+}
+
+// One figure a map is enough for a curve; the table has them all.
+bool isDrawn(const std::string& score) {
+  return !score.ends_with(".ssim") && !score.ends_with(".psnr_mask") &&
+         score.find("_scaled.") == std::string::npos;
+}
+
+// What `beam evaluate` last found of the frames, as further scores.
+void addEvaluatedFrames(const Project& project, QualityHistory& history) {
+  const fs::path file = project.folder() / kEvaluationFramesFile;
+  if (!fs::exists(file)) return;
+  try {
+    const auto json = nlohmann::json::parse(readTextFile(file));
+    for (const auto& [frame, entry] : json.at("over_time").at("frames").items()) {
+      for (const auto& [name, value] : entry.at("scores").items())
+        if (isDrawn(name)) addScore(history, frame, name, value.template get<double>());
+    }
+  } catch (const nlohmann::json::exception& e) {
+    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(), e.what());
+  }
+}
+
+// Flicker along tracked Gaussians, of the results as they are now.
+void addFlicker(const Project& project, ComputeDevice& device, Progress& progress, QualityHistory& history) {
+  std::vector<FrameIndex> frames;
+  for (const FrameQuality& q : history.frames) frames.push_back(q.frame);
+  PictureScores each;
+  scoreMotion(project, frames, nullptr, device, progress, each);
+  for (const auto& [frame, cameras] : each) {
+    for (const auto& [name, value] : cameras.at("")) addScore(history, frame, name, value);
+  }
+}
+
 int runReport(const ReportFlags& flags, CommandContext& context) {
   const Project project = Project::open(flags.project, context.services.pipeline);
   ReportPage page{
@@ -111,8 +150,16 @@ int runReport(const ReportFlags& flags, CommandContext& context) {
   for (const auto& [key, value] : project.document().settings) page.settings.emplace_back(key, textOf(value));
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
-  page.pictures = contactSheet(project, shownFrames(page.history), shownCameras(project, page.history),
-                               *device, progress);
+  addEvaluatedFrames(project, page.history);
+  {
+    Progress part = progress.part(0.5, "compare frames");
+    addFlicker(project, *device, part, page.history);
+  }
+  {
+    Progress part = progress.part(0.5, "contact sheet");
+    page.pictures =
+        contactSheet(project, shownFrames(page.history), shownCameras(project, page.history), *device, part);
+  }
   page.evaluation = evaluationOf(project);
   writeFileAtomically(flags.out, toHtml(page));
   context.console.endProgress();

@@ -26,6 +26,9 @@ void scoreMotion(const Project& project, const std::vector<FrameIndex>& frames, 
 // Means over frames of what scoreMotion found, as rows "drift" and "flicker"; nothing where it found nothing.
 ScoreTable motionTable(const PictureScores& each);
 
+// In the project's folder: what `beam evaluate` last found frame by frame, for the report.
+inline constexpr const char* kEvaluationFramesFile = "evaluation_frames.json";
+
 // The table, and "over_time": by frame its scores (means over its cameras) and its cameras' own; "worst" by
 // score.
 std::string scoreJson(const ScoreTable& table, const PictureScores& each);

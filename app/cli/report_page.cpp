@@ -323,7 +323,7 @@ class PageWriter {
     out_ += "</tbody></table>\n";
   }
 
-  // Every other score of every step: energies, losses, counts.
+  // Every other score of every step and of the evaluation: energies, flicker, losses, counts.
   void otherCurves() {
     std::string charts;
     for (const Curve& curve : curvesOf(h_)) {
@@ -342,7 +342,8 @@ class PageWriter {
       charts += "<figure>" + svgOf(c) + "</figure>";
     }
     if (charts.empty()) return;
-    section("Energies, losses and counts");
+    section("Energies, flicker and other figures over time",
+            "evaluate: as beam evaluate last found it; the others: from the records of the steps.");
     out_ += "<div class=\"charts small\">" + charts + "</div>\n";
   }
 
