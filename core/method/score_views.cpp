@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/method/training_views.h"
 #include "core/render/deferred.h"
 
@@ -75,34 +76,45 @@ Image<std::uint8_t> countedPixels(const TrainingView& view) {
   return any ? view.mask : Image<std::uint8_t>(view.photo.width, view.photo.height, 255);
 }
 
+ViewScore scoreOf(const FrameView& whole, const TrainingView& crop, const Planes& photo,
+                  const Planes& render) {
+  const Image<std::uint8_t> mask = countedPixels(crop);
+  const Image<float> photo_luma = lumaOf(photo), render_luma = lumaOf(render);
+  const Intrinsics &k = whole.camera.intrinsics, &cut = crop.camera.intrinsics;
+  const int x0 = static_cast<int>(std::lround(k.cx - cut.cx)),
+            y0 = static_cast<int>(std::lround(k.cy - cut.cy));
+  ViewScore s;
+  s.camera = whole.name;
+  s.score = scorePicture(render, photo, mask);
+  s.photo_luma = meanInside(photo_luma, mask);
+  s.render_luma = meanInside(render_luma, mask);
+  s.photo_sharpness = sharpnessInside(photo_luma, mask);
+  s.render_sharpness = sharpnessInside(render_luma, mask);
+  s.photo_thumb = thumbOf(photo_luma, x0, y0, whole.photo.width, whole.photo.height);
+  s.render_thumb = thumbOf(render_luma, x0, y0, whole.photo.width, whole.photo.height);
+  return s;
+}
+
 }  // namespace
 
 std::vector<ViewScore> scoreViews(std::span<const FrameView> views, bool held_out, const GaussianCloud& cloud,
                                   ComputeDevice& device, Progress& progress) {
-  std::vector<ViewScore> scores;
-  if (views.empty()) return scores;
+  if (views.empty()) return {};
   progress.expect(static_cast<std::int64_t>(views.size()));
   const std::vector<TrainingView> crops = cropToMasks(views);
   GBufferRenderer renderer(device);
-  Planes photo;
+  std::vector<Planes> photos(crops.size()), renders(crops.size());
   for (std::size_t i = 0; i < crops.size(); ++i) {
-    const TrainingView& crop = crops[i];
-    const FrameView& whole = views[i];
-    const Image<std::uint8_t> mask = countedPixels(crop);
-    compose(crop, vec3(0), photo);
-    for (float& v : photo.values) v = rounded(v);
-    const Planes render = planesOf(renderer.render(cloud, nullptr, crop.camera).radiance);
-    const Image<float> photo_luma = lumaOf(photo), render_luma = lumaOf(render);
-    const int x0 = static_cast<int>(std::lround(whole.camera.intrinsics.cx - crop.camera.intrinsics.cx));
-    const int y0 = static_cast<int>(std::lround(whole.camera.intrinsics.cy - crop.camera.intrinsics.cy));
-    const auto thumb = [&](const Image<float>& luma) {
-      return thumbOf(luma, x0, y0, whole.photo.width, whole.photo.height);
-    };
-    scores.push_back({whole.name, held_out, scorePicture(render, photo, mask), meanInside(photo_luma, mask),
-                      meanInside(render_luma, mask), sharpnessInside(photo_luma, mask),
-                      sharpnessInside(render_luma, mask), thumb(photo_luma), thumb(render_luma)});
+    compose(crops[i], vec3(0), photos[i]);
+    renders[i] = planesOf(renderer.render(cloud, nullptr, crops[i].camera).radiance);
     progress.step();
   }
+  std::vector<ViewScore> scores(crops.size());
+  parallelFor(crops.size(), 1, [&](std::size_t i, std::size_t) {
+    for (float& v : photos[i].values) v = rounded(v);
+    scores[i] = scoreOf(views[i], crops[i], photos[i], renders[i]);
+    scores[i].held_out = held_out;
+  });
   return scores;
 }
 
