@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 #include "core/base/parallel.h"
@@ -10,83 +11,9 @@
 namespace beam {
 namespace {
 
+using namespace bone;
+
 constexpr float kBlend_m = 0.014f;  // of neighbouring parts
-
-enum Bone {
-  Root,
-  Chest,
-  Head,
-  LUpper,
-  LFore,
-  LHand,
-  RUpper,
-  RFore,
-  RHand,
-  LThigh,
-  LShin,
-  LFoot,
-  RThigh,
-  RShin,
-  RFoot,
-  kBones
-};
-
-struct BoneRest {
-  int parent;
-  vec3 pivot;  // rest pose
-};
-// Arms hang in an A pose.
-const std::array<BoneRest, kBones> kSkeleton = {{{-1, {0, 0, 0.95f}},
-                                                 {Root, {0, 0, 1.08f}},
-                                                 {Chest, {0, 0.01f, 1.49f}},
-                                                 {Chest, {0.185f, 0, 1.41f}},
-                                                 {LUpper, {0.36f, 0, 1.20f}},
-                                                 {LFore, {0.51f, -0.02f, 1.01f}},
-                                                 {Chest, {-0.185f, 0, 1.41f}},
-                                                 {RUpper, {-0.36f, 0, 1.20f}},
-                                                 {RFore, {-0.51f, -0.02f, 1.01f}},
-                                                 {Root, {0.095f, 0, 0.91f}},
-                                                 {LThigh, {0.115f, 0, 0.50f}},
-                                                 {LShin, {0.125f, 0.01f, 0.09f}},
-                                                 {Root, {-0.095f, 0, 0.91f}},
-                                                 {RThigh, {-0.115f, 0, 0.50f}},
-                                                 {RShin, {-0.125f, 0.01f, 0.09f}}}};
-
-mat3 turn(vec3 axis, double degrees) {
-  return mat3(
-      glm::mat3_cast(glm::angleAxis(static_cast<float>(glm::radians(degrees)), glm::normalize(axis))));
-}
-
-struct Pose {
-  std::array<mat3, kBones> local;
-  vec3 root_shift{0};
-};
-
-// Arms sweep and cross before the chest, the weight shifts from leg to leg, the head follows; a take of two
-// seconds and more also turns the figure by 180 degrees.
-Pose poseAt(double t, double duration) {
-  Pose p;
-  p.local.fill(mat3(1.0f));
-  const double w = 2 * 3.14159265358979, sway = std::sin(w * 0.55 * t),
-               arms = 0.5 - 0.5 * std::cos(w * 0.8 * (t + 0.2));
-  const double turned = duration >= 2 ? glm::smoothstep(0.25, 0.9, t / duration) * 180 : 0;
-  const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  p.root_shift = vec3(0.02f * static_cast<float>(sway), 0, -0.03f);
-  p.local[Root] = turn(z, turned + 6 * sway);
-  p.local[Chest] = turn(z, 10 * std::sin(w * 0.8 * t + 0.6)) * turn(x, 4);
-  p.local[Head] = turn(z, -8 * sway) * turn(x, 5);
-  p.local[LUpper] = turn(z, -25 - 45 * arms) * turn(x, -40 - 15 * arms) * turn(y, -6 + 10 * (1 - arms));
-  p.local[LFore] = turn(z, -30 - 25 * arms) * turn(x, -45 - 25 * arms);
-  p.local[RUpper] = turn(z, 35 + 30 * (1 - arms)) * turn(x, -25 - 30 * (1 - arms)) * turn(y, 8);
-  p.local[RFore] = turn(z, 25 + 20 * (1 - arms)) * turn(x, -50 - 20 * std::sin(w * 0.5 * t));
-  p.local[LThigh] = turn(x, -12 - 8 * sway) * turn(y, -9);
-  p.local[LShin] = turn(x, 16 + 8 * sway);
-  p.local[LFoot] = turn(x, -6);
-  p.local[RThigh] = turn(x, 6 - 8 * sway) * turn(y, 9);
-  p.local[RShin] = turn(x, 10 - 6 * sway);
-  p.local[RFoot] = turn(x, -10);
-  return p;
-}
 
 float roundCone(vec3 p, vec3 a, vec3 b, float ra, float rb) {
   const vec3 ba = b - a, pa = p - a;
@@ -96,19 +23,10 @@ float roundCone(vec3 p, vec3 a, vec3 b, float ra, float rb) {
 
 }  // namespace
 
-Figure::Figure(double seconds, double duration) {
-  const Pose pose = poseAt(seconds, duration);
-  std::array<mat3, kBones> rotation;
-  std::array<vec3, kBones> translation;
-  for (int i = 0; i < kBones; ++i) {
-    const BoneRest& bone = kSkeleton[i];
-    const mat3 parent = bone.parent < 0 ? mat3(1.0f) : rotation[bone.parent];
-    const vec3 shift = bone.parent < 0 ? pose.root_shift : translation[bone.parent];
-    rotation[i] = parent * pose.local[i];
-    translation[i] = parent * bone.pivot + shift - rotation[i] * bone.pivot;
-  }
+Figure::Figure(const Pose& pose) {
+  const PosedBones bones = placeBones(pose);
   const auto add = [&](int bone, Cloth cloth, vec3 a, vec3 b, float ra, float rb, vec3 stretch = vec3(1)) {
-    parts_.push_back({a, b, ra, rb, stretch, bone, cloth, rotation[bone], translation[bone]});
+    parts_.push_back({a, b, ra, rb, stretch, bone, cloth, bones.rotation[bone], bones.translation[bone]});
   };
   const vec3 flat(0.78f, 1.18f, 1);  // broader than deep
   add(Root, Cloth::Jeans, {0, 0, 0.90f}, {0, 0, 1.00f}, 0.125f, 0.12f, {0.80f, 1.12f, 1});
@@ -171,17 +89,45 @@ float Figure::distance(vec3 x) const {
   return d;
 }
 
-SurfacePoint Figure::pointAt(vec3 x) const {
+SurfacePoint Figure::pointAt(vec3 x, std::span<const std::uint8_t> parts) const {
   SurfacePoint best;
   float nearest = 1e9f;
-  for (const Part& p : parts_) {
+  for (const std::uint8_t i : parts) {
     vec3 rest;
-    const float d = partDistance(p, x, rest);
+    const float d = partDistance(parts_[i], x, rest);
     if (d >= nearest) continue;
     nearest = d;
-    best = {rest, p.cloth};
+    best = {rest, parts_[i].cloth};
   }
   return best;
+}
+
+SurfacePoint Figure::pointAt(vec3 x) const {
+  std::vector<std::uint8_t> all(parts_.size());
+  std::iota(all.begin(), all.end(), std::uint8_t{0});
+  return pointAt(x, all);
+}
+
+std::vector<std::uint8_t> Figure::partsNear(vec3 x, float reach_m) const {
+  // Along a step a distance changes by at most this factor: cones of unequal radii are steeper than 1.
+  constexpr float kSteepest = 1.5f;
+  std::vector<float> d(parts_.size());
+  vec3 rest;
+  for (std::size_t i = 0; i < parts_.size(); ++i) d[i] = partDistance(parts_[i], x, rest);
+  const float limit = *std::min_element(d.begin(), d.end()) + 2 * kSteepest * reach_m;
+  std::vector<std::uint8_t> near;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    if (d[i] <= limit) near.push_back(static_cast<std::uint8_t>(i));
+  }
+  return near;
+}
+
+std::array<float, bone::Count> Figure::boneDistances(vec3 x) const {
+  std::array<float, bone::Count> out;
+  out.fill(1e3f);
+  vec3 rest;
+  for (const Part& p : parts_) out[p.bone] = std::min(out[p.bone], partDistance(p, x, rest));
+  return out;
 }
 
 vec3 Figure::normalAt(vec3 x) const {
@@ -268,6 +214,15 @@ Mesh Figure::mesh(float cell) const {
       m.vertices[i] -= distance(m.vertices[i]) * normalAt(m.vertices[i]);
   });
   return m;
+}
+
+Surface Figure::surface(float cell) const {
+  Surface s{mesh(cell), {}};
+  s.normals.resize(s.mesh.vertices.size());
+  parallelFor(s.normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) s.normals[i] = normalAt(s.mesh.vertices[i]);
+  });
+  return s;
 }
 
 }  // namespace beam

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/math/types.h"
+#include "core/sample/pose.h"
 #include "core/scene/mesh.h"
 
 namespace beam {
@@ -19,17 +22,28 @@ struct SurfacePoint {
   Cloth cloth = Cloth::Skin;
 };
 
+// A mesh with the normals of its vertices.
+struct Surface {
+  Mesh mesh;
+  std::vector<vec3> normals;
+};
+
 class Figure {
  public:
-  // The pose at `seconds` of a take that lasts `duration` seconds.
-  Figure(double seconds, double duration);
+  explicit Figure(const Pose& pose);
 
   // Signed distance (negative inside), in metres; exact only near the surface.
   float distance(vec3 x) const;
   SurfacePoint pointAt(vec3 x) const;
+  // The same among some parts: those of partsNear() serve every point within its reach.
+  SurfacePoint pointAt(vec3 x, std::span<const std::uint8_t> parts) const;
+  std::vector<std::uint8_t> partsNear(vec3 x, float reach_m) const;
+  // To the nearest part of each bone.
+  std::array<float, bone::Count> boneDistances(vec3 x) const;
   vec3 normalAt(vec3 x) const;
   // The surface as triangles of about `cell_m`.
   Mesh mesh(float cell_m) const;
+  Surface surface(float cell_m) const;
 
  private:
   struct Part {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -12,8 +13,11 @@
 #include "core/io/mesh_ply.h"
 #include "core/math/color.h"
 #include "core/sample/look.h"
+#include "core/sample/motion.h"
 #include "core/sample/path_tracer.h"
 #include "core/sample/sample_descriptions.h"
+#include "core/sample/skin.h"
+#include "core/sample/tracks.h"
 #include "core/scene/capture.h"
 
 namespace beam {
@@ -25,6 +29,7 @@ constexpr double kFramesPerSecond = 30;
 constexpr float kMeshCell_m = 0.007f;
 constexpr int kTruthSamples = 2;  // times the photographs' samples
 constexpr std::size_t kSeedPoints = 6000;
+constexpr std::size_t kTrackPoints = 20000;
 
 Camera lookingAt(dvec3 position, dvec3 target, const SampleOptions& o) {
   const dvec3 forward = glm::normalize(target - position),
@@ -117,24 +122,38 @@ class SampleWriter {
   void write(Progress& progress) {
     SampleDescription description{
         options_.frames, options_.width, options_.height, kFramesPerSecond, cameras_, {}, lights()};
-    description.truth_frames = {options_.frames / 2};
+    description.truth_frames = truthFrames();
     const auto truths = static_cast<std::int64_t>(description.truth_frames.size() * options_.test_cameras);
     progress.expect(static_cast<std::int64_t>(options_.frames * cameras_.size()) + truths * 3);
     panorama(folder_ / "environment.exr", dome_);
     for (const std::string& l : lights()) panorama(folder_ / "gt/environments" / (l + ".exr"), namedLight(l));
+    const Skin skin(moves() ? danceAt(0) : portraitPose(), kMeshCell_m);
+    const TrackPoints tracks(skin.first(), kTrackPoints, options_.seed);
+    SampleScene scene(skin.figure(), skin.first(), world_from_capture_);
+    seedPoints(skin);
     for (int f = 0; f < options_.frames; ++f) {
-      const Figure figure(f / kFramesPerSecond, options_.frames / kFramesPerSecond);
-      const Mesh mesh = figure.mesh(kMeshCell_m);
-      const SampleScene scene(figure, mesh, world_from_capture_);
-      if (f == 0) seedPoints(mesh);
+      const Surface surface =
+          f == 0 ? skin.first() : skin.posed(danceAt(f * kDanceFrames_s / kFramesPerSecond));
+      scene.pose(surface);
+      if (moves()) tracks.write(in(fs::path("gt/tracks") / (frameName(f) + ".ply")), surface);
       photographs(scene, f, progress);
-      if (f == description.truth_frames.front()) truth(scene, mesh, f, progress);
+      if (std::count(description.truth_frames.begin(), description.truth_frames.end(), f) > 0)
+        truth(scene, surface.mesh, f, progress);
     }
     writeSampleDescriptions(folder_, description);
   }
 
  private:
   static std::vector<std::string> lights() { return {"studio", "sunset"}; }
+
+  bool moves() const { return options_.frames > 1; }
+
+  // Of long takes the first, the middle and the last frame.
+  std::vector<int> truthFrames() const {
+    const int n = options_.frames;
+    if (n < 3) return {n / 2};
+    return {0, n / 2, n - 1};
+  }
 
   fs::path in(const fs::path& relative) const {
     const fs::path p = folder_ / relative;
@@ -199,15 +218,16 @@ class SampleWriter {
 
   // Points of the surface with the colour of their material: what a feature matcher would have given, without
   // its errors.
-  void seedPoints(const Mesh& mesh) const {
+  void seedPoints(const Skin& skin) const {
     PointCloud points;
-    const Figure figure(0, options_.frames / kFramesPerSecond);
+    const Mesh& mesh = skin.first().mesh;
     const RandomStream random(options_.seed, 0x5eedu);
     for (std::size_t i = 0; i < kSeedPoints; ++i) {
       const vec3 x = mesh.vertices[random.below(i, mesh.vertices.size())];
       points.position_m.push_back(x);
       points.color.push_back(u8vec3(
-          srgbFromLinear(glm::clamp(lookOf(figure.pointAt(x)).base_color, 0.0f, 1.0f)) * 255.0f + 0.5f));
+          srgbFromLinear(glm::clamp(lookOf(skin.figure().pointAt(x)).base_color, 0.0f, 1.0f)) * 255.0f +
+          0.5f));
     }
     writePointsPly(folder_ / "points3D.ply", points);
   }

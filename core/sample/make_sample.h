@@ -10,7 +10,7 @@
 namespace beam {
 
 struct SampleOptions {
-  int frames = 1;        // at 30 a second; the figure moves its arms, and turns round in long takes
+  int frames = 1;        // at 30 a second; from two on the figure moves (motion.h)
   int cameras = 12;      // for training, in three rings around the figure
   int test_cameras = 2;  // held out, with ground truth
   int width = 240, height = 320;

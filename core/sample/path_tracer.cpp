@@ -20,6 +20,7 @@ namespace {
 constexpr float kOffset_m = 3e-4f;
 constexpr float kBrightest = 20;  // of one path, against fireflies
 constexpr std::size_t kRows = 4;
+constexpr double kNear_m = 0.05;
 
 struct Hit {
   vec3 position, normal;  // shading normal
@@ -52,45 +53,74 @@ class PathNumbers {
 struct SampleScene::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  RTCGeometry geometry = nullptr;
   const Figure& figure;
-  mat3 capture_from_world;
-  std::vector<vec3> vertices, normals;  // world
+  mat3 world_from_capture;
+  std::vector<vec3> first;              // in the figure's pose, capture axes
+  std::vector<vec3> vertices, normals;  // as posed, world
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> part_start;  // the figure's parts near each triangle
+  std::vector<std::uint8_t> parts;
 
-  State(const Figure& f, const Mesh& mesh, const dmat3& world_from_capture)
-      : figure(f), capture_from_world(glm::transpose(world_from_capture)), triangles(mesh.triangles) {
-    const mat3 turn(world_from_capture);
-    vertices.resize(mesh.vertices.size());
-    normals.resize(mesh.vertices.size());
-    parallelFor(vertices.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        vertices[i] = turn * mesh.vertices[i];
-        normals[i] = turn * f.normalAt(mesh.vertices[i]);
-      }
-    });
+  State(const Figure& f, const Surface& surface, const dmat3& turn)
+      : figure(f),
+        world_from_capture(turn),
+        first(surface.mesh.vertices),
+        vertices(first.size()),
+        normals(first.size()),
+        triangles(surface.mesh.triangles) {
+    findParts();
     device = rtcNewDevice("threads=1,isa=avx2");
     if (!device) throw Error(Error::Kind::Bug, "Embree did not start");
     scene = rtcNewScene(device);
-    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* v = static_cast<float*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
     auto* t = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
     if (!v || !t) throw Error(Error::Kind::OutOfMemory, "Embree has no memory for the sample's mesh");
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      v[3 * i] = vertices[i].x, v[3 * i + 1] = vertices[i].y, v[3 * i + 2] = vertices[i].z;
     for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].data(), 3, t + 3 * i);
-    rtcCommitGeometry(g);
-    rtcAttachGeometry(scene, g);
-    rtcReleaseGeometry(g);
-    rtcCommitScene(scene);
+    rtcAttachGeometry(scene, geometry);
+    pose(surface);
   }
   ~State() {
+    rtcReleaseGeometry(geometry);
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
+
+  void pose(const Surface& surface) {
+    auto* v = static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      vertices[i] = world_from_capture * surface.mesh.vertices[i];
+      normals[i] = world_from_capture * surface.normals[i];
+      v[3 * i] = vertices[i].x, v[3 * i + 1] = vertices[i].y, v[3 * i + 2] = vertices[i].z;
+    }
+    rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(geometry);
+    rtcCommitScene(scene);
+  }
+
+  void findParts() {
+    part_start.assign(1, 0);
+    for (const auto& t : triangles) {
+      const vec3 a = first[t[0]];
+      const float size = std::max(glm::length(first[t[1]] - a), glm::length(first[t[2]] - a));
+      const std::vector<std::uint8_t> near = figure.partsNear(a, size);
+      parts.insert(parts.end(), near.begin(), near.end());
+      part_start.push_back(static_cast<std::uint32_t>(parts.size()));
+    }
+  }
+
+  // The look belongs to the body: of the same point in the figure's pose.
+  Look lookAt(unsigned triangle, float u, float v) const {
+    const auto& t = triangles[triangle];
+    const vec3 x = (1 - u - v) * first[t[0]] + u * first[t[1]] + v * first[t[2]];
+    return lookOf(
+        figure.pointAt(x, {parts.data() + part_start[triangle], parts.data() + part_start[triangle + 1]}));
+  }
 
   static RTCRay rayOf3(vec3 o, vec3 d) {
     RTCRay r{};
@@ -113,7 +143,7 @@ struct SampleScene::State {
     out.depth = rh.ray.tfar;
     out.position = o + out.depth * d;
     out.normal = glm::normalize((1 - u - v) * normals[t[0]] + u * normals[t[1]] + v * normals[t[2]]);
-    out.look = lookOf(figure.pointAt(capture_from_world * out.position));
+    out.look = lookAt(rh.hit.primID, u, v);
     return true;
   }
 
@@ -197,14 +227,37 @@ struct SampleScene::State {
     }
   };
 
-  // Calls body(pixel x, y, sample's position, numbers, sample) for every sample of every pixel, parallel over
-  // rows.
+  // 1 where a triangle may be seen: pixels of its projected bounding box and one around.
+  Image<std::uint8_t> mayCover(const Camera& camera) const {
+    Image<std::uint8_t> out(camera.width, camera.height);
+    std::vector<vec2> at(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const dvec3 x = camera.camera_from_world * dvec3(vertices[i]);
+      if (x.z < kNear_m) return Image<std::uint8_t>(camera.width, camera.height, 1);
+      at[i] = vec2(project(camera.intrinsics, x));
+    }
+    const vec2 last(camera.width - 1, camera.height - 1);
+    for (const auto& t : triangles) {
+      const vec2 low = glm::floor(glm::min(at[t[0]], glm::min(at[t[1]], at[t[2]]))) - 1.0f,
+                 high = glm::floor(glm::max(at[t[0]], glm::max(at[t[1]], at[t[2]]))) + 1.0f;
+      const ivec2 a(glm::clamp(low, vec2(0), last)), b(glm::clamp(high, vec2(0), last));
+      for (int y = a.y; y <= b.y; ++y) {
+        for (int x = a.x; x <= b.x; ++x) out(x, y) = 1;
+      }
+    }
+    return out;
+  }
+
+  // Calls body(pixel x, y, sample's position, numbers, sample) for every sample of every pixel that may see
+  // the figure, parallel over rows.
   template <class Body>
-  static void forEachSample(const Camera& camera, const TraceSettings& s, const Progress& progress,
-                            Body&& body) {
+  void forEachSample(const Camera& camera, const TraceSettings& s, const Progress& progress,
+                     Body&& body) const {
+    const Image<std::uint8_t> covered = mayCover(camera);
     parallelFor(static_cast<std::size_t>(camera.height), kRows, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end && !progress.stopRequested(); ++y) {
         for (int x = 0; x < camera.width; ++x) {
+          if (!covered(x, static_cast<int>(y))) continue;
           for (int i = 0; i < s.samples; ++i) {
             PathNumbers numbers(s.seed, y * static_cast<std::size_t>(camera.width) + x, i, s.samples);
             const vec2 jitter = numbers.next();
@@ -217,9 +270,11 @@ struct SampleScene::State {
   }
 };
 
-SampleScene::SampleScene(const Figure& figure, const Mesh& mesh, const dmat3& world_from_capture)
-    : state_(std::make_unique<State>(figure, mesh, world_from_capture)) {}
+SampleScene::SampleScene(const Figure& figure, const Surface& surface, const dmat3& world_from_capture)
+    : state_(std::make_unique<State>(figure, surface, world_from_capture)) {}
 SampleScene::~SampleScene() = default;
+
+void SampleScene::pose(const Surface& surface) { state_->pose(surface); }
 
 SampleScene::Picture SampleScene::photograph(const Camera& camera, const EnvironmentSampler& light,
                                              const TraceSettings& s, const Progress& progress) const {
@@ -227,7 +282,7 @@ SampleScene::Picture SampleScene::photograph(const Camera& camera, const Environ
               Image<float>(camera.width, camera.height)};
   const State::CameraRays rays(camera);
   const float share = 1.0f / static_cast<float>(s.samples);
-  State::forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int) {
+  state_->forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int) {
     const vec3 d = rays.direction(p);
     Hit h;
     if (!state_->hit(rays.origin, d, h)) return;
@@ -244,7 +299,7 @@ TracedMaps SampleScene::maps(const Camera& camera, const TraceSettings& s, const
   const State::CameraRays rays(camera);
   const vec3 axis = vec3(glm::normalize(rays.world_from_camera.rotation * dvec3(0, 0, 1)));
   const float share = 1.0f / static_cast<float>(s.samples);
-  State::forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int sample) {
+  state_->forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int sample) {
     const vec3 d = rays.direction(p);
     Hit hit;
     if (!state_->hit(rays.origin, d, hit)) return;

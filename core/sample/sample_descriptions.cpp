@@ -47,6 +47,14 @@ Json datasetJson(const SampleDescription& d) {
        "base_color, roughness, ao are composited on black; base_color linear; normal: world, smooth shading "
        "normal"},
       {"brdf", "Lambert x (1 - F) + GGX, F0 0.04, alpha = roughness^2, height-correlated Smith"}};
+  if (d.frames > 1) {
+    j["tracks"] = {
+        {"folder", "gt/tracks"},
+        {"file", "<frame>.ply, binary little-endian, float x y z nx ny nz"},
+        {"content",
+         "points spread evenly over the body's surface in the first frame and followed through the "
+         "take: row i is the same point in every file; metres and unit normals in the capture's axes"}};
+  }
   for (const SampleCamera& c : d.cameras) {
     const dmat3 r = glm::mat3_cast(c.camera.camera_from_world.rotation);
     const dvec3 t = c.camera.camera_from_world.translation_m;
