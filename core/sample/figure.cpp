@@ -147,12 +147,18 @@ Mesh Figure::mesh(float cell) const {
   const auto index = [&](int x, int y, int z) { return (static_cast<std::size_t>(z) * n.y + y) * n.x + x; };
   // Coarse cells that lie far from the surface need no fine values.
   constexpr int kStride = 4;
+  const ivec3 blocks = (n + kStride - 1) / kStride;
+  std::vector<std::uint8_t> far_block(static_cast<std::size_t>(blocks.x) * blocks.y * blocks.z);
+  const auto block = [&](int x, int y, int z) {
+    return (static_cast<std::size_t>(z / kStride) * blocks.y + y / kStride) * blocks.x + x / kStride;
+  };
   parallelFor(static_cast<std::size_t>((n.z + kStride - 1) / kStride), 1, [&](std::size_t slab, std::size_t) {
     for (int y = 0; y < n.y; y += kStride) {
       for (int x = 0; x < n.x; x += kStride) {
         const int z = static_cast<int>(slab) * kStride;
         const float d = distance(at(x + kStride / 2, y + kStride / 2, z + kStride / 2));
         const bool far = std::abs(d) > 3.2f * kStride * cell;
+        far_block[block(x, y, z)] = far;
         for (int k = z; k < std::min(z + kStride, n.z); ++k) {
           for (int j = y; j < std::min(y + kStride, n.y); ++j) {
             for (int i = x; i < std::min(x + kStride, n.x); ++i)
@@ -167,6 +173,7 @@ Mesh Figure::mesh(float cell) const {
   for (int z = 0; z + 1 < n.z; ++z) {
     for (int y = 0; y + 1 < n.y; ++y) {
       for (int x = 0; x + 1 < n.x; ++x) {
+        if (far_block[block(x, y, z)]) continue;  // nor is any edge to the next block crossed
         vec3 sum(0);
         int crossings = 0;
         for (int e = 0; e < 12; ++e) {
@@ -191,6 +198,7 @@ Mesh Figure::mesh(float cell) const {
   for (int z = 1; z + 1 < n.z; ++z) {
     for (int y = 1; y + 1 < n.y; ++y) {
       for (int x = 1; x + 1 < n.x; ++x) {
+        if (far_block[block(x, y, z)]) continue;
         for (int axis = 0; axis < 3; ++axis) {
           ivec3 step(0), u(0), v(0);
           step[axis] = 1, u[(axis + 1) % 3] = 1, v[(axis + 2) % 3] = 1;

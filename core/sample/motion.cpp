@@ -19,15 +19,15 @@ struct ArmKey {
 };
 constexpr int kKeys = 5;  // a half; the next half's first key is at its end
 const ArmKey kInner[kKeys] = {{0, {0.44, -0.10, 1.06}, {0.45, 0.9, 0.1}},
-                              {3, {0.445, -0.12, 1.055}, {0.45, 0.9, 0.1}},
-                              {12, {-0.03, -0.195, 1.30}, {0.9, -0.05, -0.75}},
-                              {15, {-0.045, -0.195, 1.305}, {0.9, -0.05, -0.75}},
-                              {24, {0.54, -0.16, 1.40}, {0.5, 0.6, -0.7}}};
+                              {1, {0.44, -0.10, 1.06}, {0.45, 0.9, 0.1}},
+                              {11, {0.0, -0.195, 1.29}, {0.9, 0.1, -0.6}},
+                              {14, {-0.015, -0.195, 1.295}, {0.9, 0.1, -0.6}},
+                              {26, {0.42, -0.20, 1.18}, {0.7, 0.55, -0.3}}};
 const ArmKey kOuter[kKeys] = {{0, {0.44, -0.10, 1.06}, {0.45, 0.9, 0.1}},
-                              {3, {0.445, -0.12, 1.055}, {0.45, 0.9, 0.1}},
-                              {12, {0.0, -0.285, 1.20}, {0.9, -0.15, -0.6}},
-                              {15, {-0.015, -0.29, 1.195}, {0.9, -0.15, -0.6}},
-                              {24, {0.55, -0.10, 1.44}, {0.5, 0.6, -0.7}}};
+                              {1, {0.44, -0.10, 1.06}, {0.45, 0.9, 0.1}},
+                              {11, {0.02, -0.257, 1.215}, {0.85, 0.1, -0.5}},
+                              {14, {0.01, -0.26, 1.212}, {0.85, 0.1, -0.5}},
+                              {26, {0.43, -0.19, 1.21}, {0.7, 0.55, -0.3}}};
 
 // The key with this running number; arms change roles with each half.
 ArmKey keyOf(int arm, int number) {
@@ -108,7 +108,7 @@ void stand(Pose& p, bool right, double lift) {
   p.local[foot] = turnAbout(x, -hip - knee + 8 * lift) * turnAbout(y, -apart);
 }
 
-constexpr double kTurnStart = 3, kTurnEnd = 26, kRamp = 0.3;  // of a half; the ramp's share of the turn
+constexpr double kTurnStart = 5, kTurnEnd = 29, kRamp = 0.3;  // of a half; the ramp's share of the turn
 
 // Integral of the smooth step from 0, for u in [0, 1].
 double smoothStepArea(double u) { return u * u * u * (1 - 0.5 * u); }

@@ -79,20 +79,20 @@ TEST(Sample, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(SamplePathTracer, TheTopOfTheHeadSeesTheWholeUpperSky) {
-  const Figure figure(0, 1);
-  const Mesh mesh = figure.mesh(0.012f);
-  const SampleScene scene(figure, mesh, dmat3(1.0));
+  const Figure figure(portraitPose());
+  const Surface surface = figure.surface(0.012f);
+  const SampleScene scene(figure, surface, dmat3(1.0));
   vec3 top(0);
-  for (const vec3& v : mesh.vertices) {
+  for (const vec3& v : surface.mesh.vertices) {
     if (v.z > top.z) top = v;
   }
   EXPECT_GT(scene.skyVisibility(top, vec3(0, 0, 1), 256, 1), 0.99f);
 }
 
 TEST(SamplePathTracer, AWhiteFurnaceGivesNoEnergyAway) {
-  const Figure figure(0, 1);
-  const Mesh mesh = figure.mesh(0.02f);
-  const SampleScene scene(figure, mesh, dmat3(1.0));
+  const Figure figure(portraitPose());
+  const Surface surface = figure.surface(0.02f);
+  const SampleScene scene(figure, surface, dmat3(1.0));
   const EnvironmentSampler white(makeEnvironment(Image<vec3>(16, 8, vec3(1))));
   Camera c;
   c.width = 24;
