@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/cli/commands.h"
 #include "core/base/error.h"
@@ -33,6 +35,7 @@ int runCheck(const CheckFlags& flags, Console& console) {
 
 struct SampleFlags {
   std::string folder, size;
+  std::vector<std::string> defects;
   SampleOptions options;
   DeviceChoice device;
 };
@@ -78,10 +81,17 @@ void addSampleCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--cameras", flags->options.cameras, "Training cameras")->check(CLI::Range(2, 200));
   command->add_option("--size", flags->size, "Picture size, WIDTHxHEIGHT");
   command->add_option("--samples", flags->options.samples, "Light paths a pixel")->check(CLI::Range(1, 4096));
+  command
+      ->add_option(
+          "--defect", flags->defects,
+          "Faults of a camera, KIND or KIND:CAMERA: dropped (every fourth frame is missing), late (by "
+          "three frames), blurred, black (the middle frame)")
+      ->delimiter(',');
   addDeviceFlags(*command, flags->device);
   command->callback([flags, &context] {
     context.action = [flags, &context] {
       applySize(flags->size, flags->options);
+      for (const std::string& d : flags->defects) flags->options.defects.push_back(parseDefect(d));
       setThreadCount(flags->device.threads);
       Progress progress(context.stop, context.console.listener());
       makeSample(flags->folder, flags->options, progress);

@@ -46,6 +46,8 @@ Camera lookingAt(dvec3 position, dvec3 target, const SampleOptions& o) {
   return c;
 }
 
+std::string trainingName(int camera) { return fmt::format("cam{:02}", camera); }
+
 // Three rings; test cameras stand between them.
 std::vector<SampleCamera> rig(const SampleOptions& o) {
   std::vector<SampleCamera> cameras;
@@ -59,7 +61,7 @@ std::vector<SampleCamera> rig(const SampleOptions& o) {
   const double tau = 2 * 3.14159265358979;
   constexpr double kRings[3] = {glm::radians(8.0), glm::radians(38.0), glm::radians(-14.0)};
   for (int i = 0; i < o.cameras; ++i) {
-    add(fmt::format("cam{:02}", i), false, tau * (i + 0.25 * (i % 3)) / o.cameras, kRings[i % 3]);
+    add(trainingName(i), false, tau * (i + 0.25 * (i % 3)) / o.cameras, kRings[i % 3]);
   }
   for (int i = 0; i < o.test_cameras; ++i) {
     add(fmt::format("test{:02}", i), true, tau * (i + 0.37) / std::max(1, o.test_cameras),
@@ -115,14 +117,16 @@ class SampleWriter {
       : folder_(folder),
         options_(options),
         cameras_(rig(options)),
+        defects_(options.defects, options.frames),
         world_from_capture_(worldFromCapture(UpAxis::PlusZ)),
         dome_(domeLight()),
         dome_sampler_(dome_) {}
 
   void write(Progress& progress) {
     SampleDescription description{
-        options_.frames, options_.width, options_.height, kFramesPerSecond, cameras_, {}, lights()};
+        options_.frames, options_.width, options_.height, kFramesPerSecond, cameras_, {}, lights(), {}};
     description.truth_frames = truthFrames();
+    description.defects = defects_.names();
     const auto truths = static_cast<std::int64_t>(description.truth_frames.size() * options_.test_cameras);
     progress.expect(static_cast<std::int64_t>(options_.frames * cameras_.size()) + truths * 3);
     panorama(folder_ / "environment.exr", dome_);
@@ -176,13 +180,23 @@ class SampleWriter {
   void photographs(const SampleScene& scene, int frame, Progress& progress) const {
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       const SampleCamera& camera = cameras_[c];
-      const SampleScene::Picture p = scene.photograph(inWorld(camera.camera, world_from_capture_),
-                                                      dome_sampler_, settings(frame, c, 0, 1), progress);
-      const fs::path file = fs::path(camera.name) / (frameName(frame) + ".png");
-      writePng(in(fs::path(camera.test ? "gt/rgb" : "images") / file), encoded(p.radiance));
-      writePng(in(fs::path(camera.test ? "gt/mask" : "masks") / file), coverageBytes(p.coverage));
+      if (const std::vector<int> shown = defects_.shownIn(camera.name, frame); !shown.empty()) {
+        const SampleScene::Picture p = scene.photograph(inWorld(camera.camera, world_from_capture_),
+                                                        dome_sampler_, settings(frame, c, 0, 1), progress);
+        for (const int f : shown) keep(camera, f, p);
+      }
       progress.step();
     }
+  }
+
+  void keep(const SampleCamera& camera, int frame, const SampleScene::Picture& p) const {
+    const fs::path file = fs::path(camera.name) / (frameName(frame) + ".png");
+    const bool blurred = defects_.has(camera.name, SampleDefect::Kind::Blurred);
+    Image<u8vec3> picture = encoded(blurred ? outOfFocus(p.radiance) : p.radiance);
+    if (defects_.black(camera.name, frame))
+      std::fill(picture.pixels.begin(), picture.pixels.end(), u8vec3(0));
+    writePng(in(fs::path(camera.test ? "gt/rgb" : "images") / file), picture);
+    writePng(in(fs::path(camera.test ? "gt/mask" : "masks") / file), coverageBytes(p.coverage));
   }
 
   void truth(const SampleScene& scene, const Mesh& mesh, int frame, Progress& progress) const {
@@ -235,6 +249,7 @@ class SampleWriter {
   fs::path folder_;
   SampleOptions options_;
   std::vector<SampleCamera> cameras_;
+  SampleDefects defects_;
   dmat3 world_from_capture_;
   Environment dome_;
   EnvironmentSampler dome_sampler_;
@@ -244,7 +259,22 @@ class SampleWriter {
 
 std::string frameName(int frame) { return fmt::format("{:06}", frame); }
 
+namespace {
+
+void requireCameras(const SampleOptions& options) {
+  for (const SampleDefect& d : options.defects) {
+    bool known = false;
+    for (int i = 0; i < options.cameras; ++i) known = known || d.camera == trainingName(i);
+    if (known) continue;
+    throw Error(Error::Kind::Usage, fmt::format("--defect {}: expected a camera from {} to {}", nameOf(d),
+                                                trainingName(0), trainingName(options.cameras - 1)));
+  }
+}
+
+}  // namespace
+
 void makeSample(const fs::path& folder, const SampleOptions& options, Progress& progress) {
+  requireCameras(options);
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
     throw Error(Error::Kind::Usage,
                 fmt::format("\"{}\" exists and is not empty; name a new folder", folder.string()));

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/base/progress.h"
+#include "core/sample/defects.h"
 
 namespace beam {
 
@@ -16,9 +18,11 @@ struct SampleOptions {
   int width = 240, height = 320;
   int samples = 48;  // light paths a pixel
   int seed = 1;
+  std::vector<SampleDefect> defects = {};  // of training cameras
 };
 
-// Writes into `folder`, which must not exist or be empty: Error{Usage} otherwise. The same bytes for any
+// Writes into `folder`, which must not exist or be empty, and whose cameras the defects name: Error{Usage}
+// otherwise. The same bytes for any
 // number of threads.
 void makeSample(const std::filesystem::path& folder, const SampleOptions& options, Progress& progress);
 

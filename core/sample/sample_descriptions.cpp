@@ -47,6 +47,7 @@ Json datasetJson(const SampleDescription& d) {
        "base_color, roughness, ao are composited on black; base_color linear; normal: world, smooth shading "
        "normal"},
       {"brdf", "Lambert x (1 - F) + GGX, F0 0.04, alpha = roughness^2, height-correlated Smith"}};
+  if (!d.defects.empty()) j["defects"] = d.defects;
   if (d.frames > 1) {
     j["tracks"] = {
         {"folder", "gt/tracks"},

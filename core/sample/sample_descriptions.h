@@ -23,6 +23,7 @@ struct SampleDescription {
   std::vector<SampleCamera> cameras;
   std::vector<int> truth_frames;
   std::vector<std::string> lights;
+  std::vector<std::string> defects;  // "late:cam03"
 };
 
 std::string frameName(int frame);  // "000012"

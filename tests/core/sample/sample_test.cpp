@@ -14,6 +14,7 @@
 #include "core/sample/look.h"
 #include "core/sample/make_sample.h"
 #include "core/sample/path_tracer.h"
+#include "core/sample/sample_descriptions.h"
 #include "tests/support/temp_dir.h"
 
 namespace beam {
@@ -67,15 +68,62 @@ TEST(Sample, OpensWithMasksThatTheTrueMeshProjectsInto) {
 TEST(Sample, IsTheSameForAnyNumberOfThreads) {
   const testing::TempDir dir;
   Progress a, b;
+  SampleOptions moving = tiny();
+  moving.frames = 3;
+  moving.samples = 2;
   setThreadCount(1);
-  makeSample(dir / "1", tiny(), a);
+  makeSample(dir / "1", moving, a);
   setThreadCount(2);
-  makeSample(dir / "2", tiny(), b);
+  makeSample(dir / "2", moving, b);
   setThreadCount(0);
-  for (const char* file :
-       {"images/cam01/000000.png", "gt/ao/test00/000000.exr", "dataset.json", "points3D.ply"}) {
+  for (const char* file : {"images/cam01/000000.png", "images/cam01/000002.png", "gt/ao/test00/000002.exr",
+                           "gt/tracks/000002.ply", "dataset.json", "points3D.ply"}) {
     EXPECT_EQ(readFile(dir / "1" / file, 1 << 24), readFile(dir / "2" / file, 1 << 24)) << file;
   }
+}
+
+TEST(Sample, DefectsDoWhatTheySay) {
+  const testing::TempDir dir;
+  SampleOptions o = tiny();
+  o.cameras = 5;
+  o.test_cameras = 0;
+  o.frames = 9;
+  o.samples = 1;
+  for (const char* d : {"dropped:cam01", "late:cam02", "blurred:cam03", "black:cam04"})
+    o.defects.push_back(parseDefect(d));
+  SampleOptions sound = o;
+  sound.defects.clear();
+  Progress a, b;
+  makeSample(dir / "bad", o, a);
+  makeSample(dir / "sound", sound, b);
+  const auto file = [&](const char* take, int camera, int frame) {
+    return dir / take / "images" / ("cam0" + std::to_string(camera)) / (frameName(frame) + ".png");
+  };
+  const auto bytes = [&](const char* take, int camera, int frame) {
+    return readFile(file(take, camera, frame), 1 << 24);
+  };
+  for (int f = 0; f < o.frames; ++f) {
+    EXPECT_EQ(bytes("bad", 0, f), bytes("sound", 0, f)) << f;
+    EXPECT_EQ(std::filesystem::exists(file("bad", 1, f)), f % 4 != 2) << f;
+    EXPECT_EQ(bytes("bad", 2, f), bytes("sound", 2, std::max(0, f - 3))) << f;
+    EXPECT_NE(bytes("bad", 3, f), bytes("sound", 3, f)) << f;
+    EXPECT_EQ(bytes("bad", 4, f) == bytes("sound", 4, f), f != 4) << f;
+    EXPECT_TRUE(std::filesystem::exists(dir / "bad/gt/tracks" / (frameName(f) + ".ply")));
+  }
+  for (const u8vec3& p : readPhoto(file("bad", 4, 4)).pixels) EXPECT_EQ(p, u8vec3(0));
+  EXPECT_THROW(parseDefect("early"), Error);
+  o.defects = {parseDefect("late:cam05")};
+  EXPECT_THROW(makeSample(dir / "none", o, a), Error);
+}
+
+TEST(SampleDefects, OutOfFocusKeepsLightAndSpreadsIt) {
+  Image<vec3> dot(64, 160, vec3(0), Encoding::Linear);
+  dot(32, 80) = vec3(1);
+  const Image<vec3> blurred = outOfFocus(dot);
+  float sum = 0;
+  for (const vec3& p : blurred.pixels) sum += p.x;
+  EXPECT_NEAR(sum, 1, 1e-4);
+  EXPECT_NEAR(blurred(32, 80).x, 1 / (2 * kPi * 4), 2e-3);  // deviation 2 pixels
 }
 
 TEST(SamplePathTracer, TheTopOfTheHeadSeesTheWholeUpperSky) {
