@@ -13,7 +13,8 @@ namespace {
 
 using namespace bone;
 
-constexpr float kBlend_m = 0.014f;  // of neighbouring parts
+constexpr float kBlend_m = 0.014f;       // of neighbouring parts
+constexpr float kBlendReach_m = 0.025f;  // parts within thrice this of the nearest take part in its blend
 
 float roundCone(vec3 p, vec3 a, vec3 b, float ra, float rb) {
   const vec3 ba = b - a, pa = p - a;
@@ -66,6 +67,8 @@ Figure::Figure(const Pose& pose) {
     add(foot, Cloth::Sole, {side * 0.125f, 0.03f, 0.02f}, {side * 0.135f, -0.15f, 0.02f}, 0.036f, 0.036f,
         {0.95f, 1, 2.2f});
   }
+  all_.resize(parts_.size());
+  std::iota(all_.begin(), all_.end(), std::uint8_t{0});
 }
 
 float Figure::partDistance(const Part& p, vec3 x, vec3& rest) const {
@@ -76,10 +79,13 @@ float Figure::partDistance(const Part& p, vec3 x, vec3& rest) const {
   return roundCone(stretched(rest), stretched(p.a), stretched(p.b), p.ra, p.rb) / largest;
 }
 
-float Figure::distance(vec3 x) const {
+float Figure::distance(vec3 x) const { return distance(x, all_); }
+
+float Figure::distance(vec3 x, std::span<const std::uint8_t> parts) const {
   vec3 rest;
   float d = 1e3f;
-  for (const Part& p : parts_) {
+  for (const std::uint8_t i : parts) {
+    const Part& p = parts_[i];
     const float e = partDistance(p, x, rest);
     const bool hard = p.cloth == Cloth::Eye || p.cloth == Cloth::Sole;
     const float k = hard ? 0.003f : kBlend_m;
@@ -102,11 +108,7 @@ SurfacePoint Figure::pointAt(vec3 x, std::span<const std::uint8_t> parts) const 
   return best;
 }
 
-SurfacePoint Figure::pointAt(vec3 x) const {
-  std::vector<std::uint8_t> all(parts_.size());
-  std::iota(all.begin(), all.end(), std::uint8_t{0});
-  return pointAt(x, all);
-}
+SurfacePoint Figure::pointAt(vec3 x) const { return pointAt(x, all_); }
 
 std::vector<std::uint8_t> Figure::partsNear(vec3 x, float reach_m) const {
   // Along a step a distance changes by at most this factor: cones of unequal radii are steeper than 1.
@@ -130,12 +132,12 @@ std::array<float, bone::Count> Figure::boneDistances(vec3 x) const {
   return out;
 }
 
-vec3 Figure::normalAt(vec3 x) const {
+vec3 Figure::normalAt(vec3 x) const { return normalAt(x, all_); }
+
+vec3 Figure::normalAt(vec3 x, std::span<const std::uint8_t> parts) const {
   constexpr float h = 0.002f;
-  const vec3 g(distance(x + vec3(h, 0, 0)) - distance(x - vec3(h, 0, 0)),
-               distance(x + vec3(0, h, 0)) - distance(x - vec3(0, h, 0)),
-               distance(x + vec3(0, 0, h)) - distance(x - vec3(0, 0, h)));
-  return glm::normalize(g);
+  const auto along = [&](vec3 step) { return distance(x + step, parts) - distance(x - step, parts); };
+  return glm::normalize(vec3(along(vec3(h, 0, 0)), along(vec3(0, h, 0)), along(vec3(0, 0, h))));
 }
 
 // Surface nets: one vertex a cell that the surface crosses, one quad an edge.
@@ -157,12 +159,16 @@ Mesh Figure::mesh(float cell) const {
       for (int x = 0; x < n.x; x += kStride) {
         const int z = static_cast<int>(slab) * kStride;
         const float d = distance(at(x + kStride / 2, y + kStride / 2, z + kStride / 2));
-        const bool far = std::abs(d) > 3.2f * kStride * cell;
+        const bool far = std::abs(d) > 2.2f * kStride * cell;
+        const std::vector<std::uint8_t> near =
+            far ? std::vector<std::uint8_t>{}
+                : partsNear(at(x + kStride / 2, y + kStride / 2, z + kStride / 2),
+                            kBlendReach_m + kStride * cell);
         far_block[block(x, y, z)] = far;
         for (int k = z; k < std::min(z + kStride, n.z); ++k) {
           for (int j = y; j < std::min(y + kStride, n.y); ++j) {
             for (int i = x; i < std::min(x + kStride, n.x); ++i)
-              field[index(i, j, k)] = far ? d : distance(at(i, j, k));
+              field[index(i, j, k)] = far ? d : distance(at(i, j, k), near);
           }
         }
       }
@@ -218,8 +224,11 @@ Mesh Figure::mesh(float cell) const {
   }
   // Onto the surface, so that shading normals and silhouettes are smooth.
   parallelFor(m.vertices.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      m.vertices[i] -= distance(m.vertices[i]) * normalAt(m.vertices[i]);
+    for (std::size_t i = begin; i < end; ++i) {
+      vec3& v = m.vertices[i];
+      const std::vector<std::uint8_t> near = partsNear(v, kBlendReach_m);
+      v -= distance(v, near) * normalAt(v, near);
+    }
   });
   return m;
 }
@@ -228,7 +237,10 @@ Surface Figure::surface(float cell) const {
   Surface s{mesh(cell), {}};
   s.normals.resize(s.mesh.vertices.size());
   parallelFor(s.normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) s.normals[i] = normalAt(s.mesh.vertices[i]);
+    for (std::size_t i = begin; i < end; ++i) {
+      const vec3 v = s.mesh.vertices[i];
+      s.normals[i] = normalAt(v, partsNear(v, kBlendReach_m));
+    }
   });
   return s;
 }

@@ -55,9 +55,12 @@ class Figure {
     mat3 rotation;  // posed from rest
     vec3 translation;
   };
+  float distance(vec3 x, std::span<const std::uint8_t> parts) const;
+  vec3 normalAt(vec3 x, std::span<const std::uint8_t> parts) const;
   float partDistance(const Part& part, vec3 x, vec3& rest) const;
 
   std::vector<Part> parts_;
+  std::vector<std::uint8_t> all_;  // indices of all parts
 };
 
 }  // namespace beam
