@@ -178,7 +178,8 @@ struct SampleScene::State {
     const EnvironmentSampler::Sample s = light.sample(u.x, u.y);
     add(s.direction, s.radiance, s.pdf);
     const vec3 wi = Frame3(n).toWorld(cosineDirection(c));
-    add(wi, light.texelRadiance(wi), light.pdf(wi));
+    const EnvironmentSampler::Sample seen = light.at(wi);
+    add(wi, seen.radiance, seen.pdf);
     return sum;
   }
 
