@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is there of a take: the state of every stage in every frame and the scores as curves, in one pass over
+// the project's folder. For timelines; a single frame is asked of Project.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/pipeline/project.h"
+
+namespace beam {
+
+enum class CellState {
+  Empty,
+  Running,  // some process holds a lease of it
+  Done,
+  Stale,  // there is a result, made with other settings or inputs
+  Failed,
+  Blocked,  // needs something the project does not have
+};
+
+struct SurveyLane {
+  std::string stage, title;
+  std::string blocked_reason;      // empty: it can run
+  std::vector<CellState> cells;    // by frame: of the first step that is not done, else Done
+  std::vector<std::string> notes;  // by frame: why it failed; empty: it did not
+};
+
+struct SurveyCurve {
+  std::string name;            // "surface.fit.gaussians", "surface.fit.seconds"
+  std::vector<double> values;  // by frame; NaN: none
+};
+
+struct TakeSurvey {
+  std::vector<std::string> frames;
+  std::vector<SurveyLane> lanes;    // in pipeline order
+  std::vector<SurveyCurve> curves;  // of results with the settings in force, by step and name
+  std::vector<Digest> stamps;  // by frame: changes when a finished result comes or goes; zero: there is none
+
+  const SurveyCurve* curve(std::string_view name) const;  // null: there is none
+};
+
+// Keeps what cannot change between passes: keys of unchanged settings and records of immutable results. One
+// thread at a time.
+class TakeSurveyor {
+ public:
+  TakeSurvey survey(const Project& project);
+  // Pictures of the capture may have changed on disk: the next pass asks for every key again.
+  void forgetKeys() { known_for_.clear(); }
+
+ private:
+  struct Record {
+    std::string step, frame;
+    std::map<std::string, double> scores;
+    bool whole = false;  // every file was there with its size
+  };
+  struct Pass;
+  const std::vector<Digest>& keysOf(const Project& project, const std::string& step, bool per_frame);
+  void readRecords(const Project& project, Pass& pass);
+
+  std::string known_for_;                            // project and settings that keys_ belong to
+  std::map<std::string, std::vector<Digest>> keys_;  // by step; one a frame, or a single one
+  std::map<Digest, Record> records_;
+};
+
+}  // namespace beam
