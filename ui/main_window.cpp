@@ -29,6 +29,7 @@
 #include "ui/settings_panel.h"
 #include "ui/stage_rail.h"
 #include "ui/start_page.h"
+#include "ui/timeline_panel.h"
 #include "viewers/image/image_view.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
@@ -38,6 +39,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kViewNames[] = {"splat", "image", "scene"};
+constexpr const char* kScopeNames[] = {"frame", "range", "take"};
 
 QString machineText(const StudioServices& services) {
   const double memory_gb =
@@ -60,8 +62,18 @@ std::optional<StudioView> studioViewNamed(std::string_view name) {
   return std::nullopt;
 }
 
+std::optional<RunScope> runScopeNamed(std::string_view name) {
+  for (int i = 0; i < 3; ++i) {
+    if (name == kScopeNames[i]) return static_cast<RunScope>(i);
+  }
+  return std::nullopt;
+}
+
 MainWindow::MainWindow(StudioServices services, Layout layout)
-    : services_(services), model_(std::move(services)), layout_(layout) {
+    : services_(services),
+      model_(std::move(services)),
+      player_(model_, [this] { return viewFollows(); }),
+      layout_(layout) {
   setAcceptDrops(true);
   setMinimumSize(1000, 640);
   resize(1600, 1000);
@@ -72,6 +84,7 @@ MainWindow::MainWindow(StudioServices services, Layout layout)
   connectModel();
   connectViews();
   connectJob();
+  connectPlayer();
   fresh_state_ = saveState();
   if (layout_ == Layout::Remembered) restoreLayout();
   start_->setRecent(QSettings().value("recent").toStringList());
@@ -175,7 +188,11 @@ void MainWindow::makeDocks() {
   QDockWidget* right = dock("inspector", "Inspector", inspector, Qt::RightDockWidgetArea);
   QDockWidget* bottom = dock("log", "Log", log_, Qt::BottomDockWidgetArea);
   resizeDocks({left, right}, {280, 340}, Qt::Horizontal);
-  resizeDocks({bottom}, {130}, Qt::Vertical);
+  timeline_ = new TimelinePanel(model_, player_);
+  QDockWidget* timeline = dock("timeline", "Timeline", timeline_, Qt::BottomDockWidgetArea);
+  tabifyDockWidget(timeline, bottom);
+  timeline->raise();
+  resizeDocks({timeline}, {190}, Qt::Vertical);
   settings_->setStage(rail_->selected());
   reading_ = new QLabel;
   state_words_ = new QLabel;
@@ -190,10 +207,10 @@ void MainWindow::showView(StudioView view) {
   widgets[static_cast<int>(view)]->setFocus();
 }
 
-bool MainWindow::settled() const {
-  if (sample_.busy() || !model_.settled() || !lights_.settled()) return false;
-  if (!model_.isOpen()) return true;
-  switch (static_cast<StudioView>(views_->currentIndex())) {
+StudioView MainWindow::shownView() const { return static_cast<StudioView>(views_->currentIndex()); }
+
+bool MainWindow::viewSettled() const {
+  switch (shownView()) {
     case StudioView::Splat:
       return splat_->settled();
     case StudioView::Image:
@@ -202,6 +219,15 @@ bool MainWindow::settled() const {
       return scene_->settled();
   }
   return true;
+}
+
+bool MainWindow::viewFollows() const {
+  return shownView() == StudioView::Splat ? splat_->upToDate() : viewSettled();
+}
+
+bool MainWindow::settled() const {
+  if (sample_.busy() || !model_.settled() || !lights_.settled()) return false;
+  return !model_.isOpen() || viewSettled();
 }
 
 void MainWindow::open(const fs::path& path) {
@@ -220,7 +246,7 @@ void MainWindow::open(const fs::path& path) {
 void MainWindow::keyPressEvent(QKeyEvent* event) {
   bool taken = false;
   if (centre_->currentIndex() == 1) {
-    switch (static_cast<StudioView>(views_->currentIndex())) {
+    switch (shownView()) {
       case StudioView::Splat:
         taken = splat_->handleKey(*event);
         break;
@@ -231,6 +257,7 @@ void MainWindow::keyPressEvent(QKeyEvent* event) {
         taken = scene_->handleKey(*event);
         break;
     }
+    taken = taken || timeline_->handleKey(*event);
   }
   if (!taken) QMainWindow::keyPressEvent(event);
 }

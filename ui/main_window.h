@@ -7,8 +7,10 @@
 
 #include "ui/job_bridge.h"
 #include "ui/light_library.h"
+#include "ui/player.h"
 #include "ui/project_model.h"
 #include "ui/sample_maker.h"
+#include "ui/timeline_lanes.h"
 #include "viewers/view_state.h"
 
 class QLabel;
@@ -27,8 +29,11 @@ class SettingsPanel;
 class SplatView;
 class StageRail;
 class StartPage;
+class TimelinePanel;
 
 enum class StudioView { Splat, Image, Scene };
+enum class RunScope { Frame, Range, Take };
+std::optional<RunScope> runScopeNamed(std::string_view name);      // "frame", "range", "take"
 std::optional<StudioView> studioViewNamed(std::string_view name);  // "splat", "image", "scene"
 
 class MainWindow final : public QMainWindow {
@@ -42,8 +47,8 @@ class MainWindow final : public QMainWindow {
   // A capture, a project or a panorama.
   void open(const std::filesystem::path& path);
   void showView(StudioView view);
-  // The current frame, or all; `until` empty: every stage.
-  void run(const std::string& until = {}, bool all_frames = false);
+  // `until` empty: every stage.
+  void run(const std::string& until = {}, RunScope scope = RunScope::Frame);
   void cancelRun();
 
   ProjectModel& model() { return model_; }
@@ -52,6 +57,10 @@ class MainWindow final : public QMainWindow {
   SplatView& splatView() { return *splat_; }
   ImagePage& imagePage() { return *images_; }
   SceneView& sceneView() { return *scene_; }
+  Player& player() { return player_; }
+  TimelinePanel& timeline() { return *timeline_; }
+  // Pictures at full size while playing, too, however slow.
+  void setFullSizePlay(bool full) { full_size_play_ = full; }
   StageRail& rail() { return *rail_; }
   RunBar& runBar() { return *run_bar_; }
   SettingsPanel& settings() { return *settings_; }
@@ -73,9 +82,16 @@ class MainWindow final : public QMainWindow {
   void connectModel();
   void connectViews();
   void connectJob();
+  void connectPlayer();
 
   void showOpened();
   void showValues();
+  void showValuesIn(StudioView view);
+  void showPlaying();
+  void showRunning(const std::string& stage, std::optional<FrameIndex> frame);
+  StudioView shownView() const;
+  bool viewSettled() const;
+  bool viewFollows() const;
   void showStages();
   void showFinished(const JobFinished& outcome);
   void showTitle();
@@ -96,8 +112,11 @@ class MainWindow final : public QMainWindow {
   LightLibrary lights_;
   JobBridge job_;
   SampleMaker sample_;
+  Player player_;
   Layout layout_;
-  bool previewing_ = false;
+  RunOverlay run_;           // the run that is going on
+  bool previewing_ = false;  // of the shown frame
+  bool full_size_play_ = false;
 
   StageRail* rail_ = nullptr;
   RunBar* run_bar_ = nullptr;
@@ -111,6 +130,7 @@ class MainWindow final : public QMainWindow {
   ProjectPanel* project_panel_ = nullptr;
   SettingsPanel* settings_ = nullptr;
   LogPanel* log_ = nullptr;
+  TimelinePanel* timeline_ = nullptr;
   QLabel *reading_ = nullptr, *state_words_ = nullptr;
   QByteArray fresh_state_;
 };

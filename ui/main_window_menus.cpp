@@ -31,6 +31,8 @@ const char* const kKeys =
     "photograph</td></tr>"
     "<tr><td><b>W · T · hold Shift</b></td><td>images: wipe · swap sides · B alone</td></tr>"
     "<tr><td><b>K · G</b></td><td>scene: cameras · grid</td></tr>"
+    "<tr><td><b>Space · ← · →</b></td><td>play or pause · previous · next frame</td></tr>"
+    "<tr><td><b>I · O · L</b></td><td>in point · out point · loop</td></tr>"
     "<tr><td><b>Ctrl+Enter · Ctrl+.</b></td><td>run · cancel</td></tr></table>";
 
 }  // namespace
@@ -57,7 +59,8 @@ void MainWindow::makeMenus() {
 
   QMenu* process = menuBar()->addMenu("&Process");
   add(process, "Run this frame", QKeySequence("Ctrl+Return"), [this] { run(); });
-  add(process, "Run all frames", QKeySequence("Ctrl+Shift+Return"), [this] { run({}, true); });
+  add(process, "Run in–out range", QKeySequence("Ctrl+Alt+Return"), [this] { run({}, RunScope::Range); });
+  add(process, "Run whole take", QKeySequence("Ctrl+Shift+Return"), [this] { run({}, RunScope::Take); });
   add(process, "Cancel", QKeySequence("Ctrl+."), [this] { cancelRun(); });
 
   QMenu* view = menuBar()->addMenu("&View");

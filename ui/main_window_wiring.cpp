@@ -10,6 +10,7 @@
 #include "ui/project_panel.h"
 #include "ui/run_bar.h"
 #include "ui/stage_rail.h"
+#include "ui/timeline_panel.h"
 #include "viewers/image/image_view.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
@@ -40,8 +41,9 @@ void MainWindow::connectModel() {
 
 void MainWindow::connectViews() {
   connect(views_, &QStackedWidget::currentChanged, this, [this] {
-    // The light may have been turned since.
+    // The light may have been turned since; and a view that is not seen does not follow the frames.
     if (views_->currentWidget() == images_) images_->setLight({lights_.light(), splat_->state().yaw_rad});
+    showValuesIn(shownView());
   });
   connect(splat_, &SplatView::hovered, reading_, &QLabel::setText);
   connect(splat_, &SplatView::pictureShown, this, &MainWindow::showStatus);
@@ -58,14 +60,17 @@ void MainWindow::connectViews() {
 
 void MainWindow::connectJob() {
   connect(run_bar_, &RunBar::runWanted, this, [this](const QString& until) { run(until.toStdString()); });
+  connect(run_bar_, &RunBar::rangeWanted, this, [this] { run({}, RunScope::Range); });
+  connect(run_bar_, &RunBar::takeWanted, this, [this] { run({}, RunScope::Take); });
   connect(run_bar_, &RunBar::stopWanted, this, &MainWindow::cancelRun);
   connect(&job_, &JobBridge::stageStarted, this,
-          [this](const StageStarted& stage) { rail_->setRunning(stage.stage, 0); });
+          [this](const StageStarted& stage) { showRunning(stage.stage, stage.frame); });
   connect(&job_, &JobBridge::progressed, this, [this](const StepProgress& progress) {
     run_bar_->showProgress(progress);
+    showRunning(stageOf(progress.ref.step), progress.ref.frame);
     rail_->setRunning(stageOf(progress.ref.step), progress.report.fraction);
   });
-  connect(&job_, &JobBridge::stepFinished, this, [this] { model_.refresh(true); });
+  connect(&job_, &JobBridge::stepFinished, this, [this] { model_.refresh(); });
   connect(&job_, &JobBridge::stepFailed, this, [this](const StepFailed& failure) {
     say("Frame " + QString::fromStdString(failure.ref.frame_name) + " failed at " +
             QString::fromStdString(failure.ref.step),
@@ -74,7 +79,9 @@ void MainWindow::connectJob() {
   connect(&job_, &JobBridge::warned, this,
           [this](const QString& text) { log_->add(LogLevel::Warning, text); });
   connect(&job_, &JobBridge::previewChanged, this, [this](const std::shared_ptr<const GaussianCloud>& cloud) {
-    previewing_ = true;
+    // Only where its frame is looked at: other frames may be watched while this one is solved.
+    previewing_ = run_.running_frame == model_.frame().value && !player_.playing();
+    if (!previewing_) return;
     splat_->setScene(
         {cloud, nullptr},
         QString("frame %1 · live preview, %L2 Gaussians").arg(model_.frameName()).arg(cloud->size()));
@@ -92,15 +99,59 @@ void MainWindow::connectJob() {
   });
 }
 
-void MainWindow::run(const std::string& until, bool all_frames) {
+void MainWindow::connectPlayer() {
+  connect(&player_, &Player::playingChanged, this, &MainWindow::showPlaying);
+  connect(splat_, &SplatView::pictureShown, &player_, &Player::poll);
+}
+
+void MainWindow::run(const std::string& until, RunScope scope) {
   if (!model_.isOpen() || job_.busy() || sample_.busy()) return;
   if (!model_.save()) return;
   message_->hide();
   RunRequest request;
   request.until = until;
-  if (!all_frames) request.frames = {model_.frame()};
+  const FrameRange all{0, static_cast<int>(model_.capture()->frames.size()) - 1};
+  const FrameRange range = scope == RunScope::Take ? all
+                           : scope == RunScope::Range
+                               ? player_.range()
+                               : FrameRange{model_.frame().value, model_.frame().value};
+  run_ = {};
+  run_.until = until;
+  run_.active = true;
+  for (int f = range.first; f <= range.last; ++f) {
+    run_.frames.push_back(f);
+    request.frames.push_back(FrameIndex{f});
+  }
+  timeline_->setRun(run_);
   job_.start(model_.project(), request, services_.job_device);
-  run_bar_->showStarted(all_frames ? QString("Starting all frames") : "Starting frame " + model_.frameName());
+  run_bar_->showStarted(range.size() == 1 ? "Starting frame " +
+                                                QString::fromStdString(model_.capture()->frames[range.first])
+                                          : QString("Starting %1 frames").arg(range.size()));
+}
+
+void MainWindow::showRunning(const std::string& stage, std::optional<FrameIndex> frame) {
+  rail_->setRunning(stage, 0);
+  const int f = frame ? frame->value : -1;
+  if (run_.running_stage == stage && run_.running_frame == f) return;
+  run_.running_stage = stage;
+  run_.running_frame = f;
+  timeline_->setRun(run_);
+}
+
+void MainWindow::showPlaying() {
+  if (!player_.playing()) {
+    splat_->setPassing(0);
+    timeline_->setPictureNote({});
+    showStages();
+    return showValues();
+  }
+  previewing_ = false;
+  const double interval_ms = 1000 / player_.clock().takeRate();
+  const int divisor = full_size_play_ ? 1 : playDivisor(splat_->expectedMilliseconds(), interval_ms);
+  splat_->setPassing(divisor);
+  timeline_->setPictureNote(shownView() != StudioView::Splat || divisor == 1 ? QString()
+                            : divisor == 2                                   ? "half size while playing"
+                                                                             : "quarter size while playing");
 }
 
 void MainWindow::cancelRun() {
@@ -137,24 +188,48 @@ void MainWindow::showOpened() {
 }
 
 void MainWindow::showValues() {
-  const FrameValues& values = model_.values();
-  // A finished step between two previews would throw the view back to an older picture.
-  if (!(previewing_ && job_.busy()) || values.materials) {
-    splat_->setScene({values.cloud, values.materials}, "frame " + model_.frameName());
+  if (player_.playing()) {
+    showPlaying();  // the size may have to change
+    return showValuesIn(shownView());
   }
-  scene_->setCloud(values.cloud);
-  scene_->setMesh(values.mesh);
-  images_->refresh();
+  for (const StudioView view : {StudioView::Splat, StudioView::Image, StudioView::Scene}) showValuesIn(view);
   showStatus();
 }
 
+void MainWindow::showValuesIn(StudioView view) {
+  if (!model_.isOpen()) return;
+  const FrameValues& values = model_.values();
+  switch (view) {
+    case StudioView::Splat: {
+      // A finished step between two previews would throw the view back to an older picture.
+      if (previewing_ && job_.busy() && run_.running_frame == model_.frame().value && !values.materials)
+        return;
+      if (const auto& held = model_.held()) {
+        const QString from = QString::fromStdString(model_.capture()->frames[held->from.value]);
+        return splat_->setScene(
+            {held->values.cloud, held->values.materials},
+            QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));
+      }
+      return splat_->setScene({values.cloud, values.materials}, "frame " + model_.frameName());
+    }
+    case StudioView::Image:
+      return images_->refresh();
+    case StudioView::Scene:
+      scene_->setCloud(values.cloud);
+      scene_->setMesh(values.mesh);
+  }
+}
+
 void MainWindow::showStages() {
+  if (player_.playing()) return;  // the rail tells of one frame: of the one that is looked at at rest
   rail_->setStages(model_.stages());
   images_->refresh();
 }
 
 void MainWindow::showFinished(const JobFinished& outcome) {
   previewing_ = false;
+  run_ = {};
+  timeline_->setRun(run_);
   rail_->setRunning({}, 0);
   const QString took = durationText(outcome.seconds);
   const QString steps =

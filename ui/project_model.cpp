@@ -6,6 +6,8 @@
 
 #include <QStandardPaths>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 
 namespace beam {
@@ -31,24 +33,39 @@ Project projectOfCapture(const fs::path& capture, const std::shared_ptr<const Pi
   }
 }
 
-std::vector<StageStatus> statusOf(const Project& project, FrameIndex shown) {
+StepState stateOf(CellState cell) {
+  switch (cell) {
+    case CellState::Done:
+      return StepState::Done;
+    case CellState::Running:
+      return StepState::Running;
+    case CellState::Failed:
+      return StepState::Failed;
+    case CellState::Blocked:
+      return StepState::Blocked;
+    case CellState::Empty:
+    case CellState::Stale:
+      break;
+  }
+  return StepState::Pending;
+}
+
+std::vector<StageStatus> statusOf(const TakeSurvey& survey, const std::vector<StageInfo>& infos,
+                                  FrameIndex shown) {
   std::vector<StageStatus> all;
-  const int frames = static_cast<int>(project.capture().frames.size());
-  for (const StageInfo& info : project.setup().stages.infos()) {
-    StageStatus status{.id = info.id,
-                       .title = QString::fromStdString(info.title),
-                       .summary = QString::fromStdString(info.summary),
-                       .frames = frames,
-                       .detail = QString::fromStdString(project.blockedReason(info.id))};
-    for (int f = 0; f < frames; ++f) {
-      const StepState state = project.stageState(info.id, FrameIndex{f});
-      if (state == StepState::Done) ++status.done;
-      if (f == shown.value) status.state = state;
-    }
-    for (const StepInfo& step : info.steps) {
-      if (status.state != StepState::Failed) break;
-      const std::string why = project.failureOf(info.id + "." + step.id, shown);
-      if (!why.empty()) status.detail = QString::fromStdString(why);
+  for (std::size_t i = 0; i < survey.lanes.size(); ++i) {
+    const SurveyLane& lane = survey.lanes[i];
+    StageStatus status{
+        .id = lane.stage,
+        .title = QString::fromStdString(lane.title),
+        .summary = QString::fromStdString(infos[i].summary),
+        .done = static_cast<int>(std::count(lane.cells.begin(), lane.cells.end(), CellState::Done)),
+        .frames = static_cast<int>(lane.cells.size()),
+        .detail = QString::fromStdString(lane.blocked_reason)};
+    const auto f = static_cast<std::size_t>(shown.value);
+    if (f < lane.cells.size()) {
+      status.state = stateOf(lane.cells[f]);
+      if (!lane.notes[f].empty()) status.detail = QString::fromStdString(lane.notes[f]);
     }
     all.push_back(std::move(status));
   }
@@ -62,9 +79,6 @@ FrameValues valuesOf(const Project& project, FrameIndex frame) {
     if (result->materials)
       values.materials = std::make_shared<const Materials>(std::move(*result->materials));
   }
-  if (std::optional<Mesh> mesh = loadFrameMesh(project, frame)) {
-    values.mesh = std::make_shared<const Mesh>(std::move(*mesh));
-  }
   return values;
 }
 
@@ -77,6 +91,13 @@ struct ProjectModel::Opened {
   QString error;
 };
 
+struct ProjectModel::Surveyed {
+  std::uint64_t ticket = 0;
+  std::shared_ptr<const Project> project;
+  std::shared_ptr<const TakeSurvey> survey;  // null: `error` tells why
+  QString error;
+};
+
 fs::path projectFolderFor(const fs::path& capture) {
   const fs::path folder = fs::absolute(capture / "").lexically_normal().parent_path();
   const fs::path name = folder.filename().string() + ".beam";
@@ -85,7 +106,18 @@ fs::path projectFolderFor(const fs::path& capture) {
 }
 
 ProjectModel::ProjectModel(StudioServices services, QObject* parent)
-    : QObject(parent), services_(std::move(services)) {
+    : QObject(parent),
+      services_(std::move(services)),
+      cache_(services_.frame_memory_bytes > 0 ? services_.frame_memory_bytes : defaultFrameBudget(),
+             [this](FrameIndex frame) {
+               QMetaObject::invokeMethod(
+                   this,
+                   [this, frame] {
+                     Q_EMIT memoryChanged();
+                     if (!ready_ && project_ && frame == frameWithResults().value_or(frame_)) showFrame();
+                   },
+                   Qt::QueuedConnection);
+             }) {
   autosave_.setSingleShot(true);
   autosave_.setInterval(kAutosave_ms);
   connect(&autosave_, &QTimer::timeout, this, &ProjectModel::saveQuietly);
@@ -130,10 +162,20 @@ void ProjectModel::adopt(const std::shared_ptr<Opened>& result) {
   capture_ = result->capture;
   frame_ = FrameIndex{0};
   stages_.clear();
+  survey_ = nullptr;
+  surveyor_ = std::make_shared<TakeSurveyor>();
   values_ = {};
+  held_.reset();
+  values_of_.reset();
+  prefetch_.clear();
+  told_error_.clear();
+  ready_ = false;
+  cache_.clear();
+  cache_.setSource([project = *project_](FrameIndex frame) { return valuesOf(project, frame); }, {});
   unsaved_ = !Project::isProject(project_->folder());
   Q_EMIT opened();
   refresh();
+  showFrame();
 }
 
 QString ProjectModel::frameName() const {
@@ -144,8 +186,10 @@ QString ProjectModel::frameName() const {
 void ProjectModel::setFrame(FrameIndex frame) {
   if (frame == frame_) return;
   frame_ = frame;
+  ready_ = false;
   Q_EMIT frameChanged();
-  refresh();
+  showStages();
+  showFrame();
 }
 
 void ProjectModel::edited() {
@@ -153,7 +197,7 @@ void ProjectModel::edited() {
   // A project that is not on disk yet stays in memory until it is run or saved.
   if (Project::isProject(project_->folder()) && !project_->readOnly()) autosave_.start();
   Q_EMIT settingsChanged();
-  refresh(false);
+  refresh();
 }
 
 void ProjectModel::set(const std::string& key, const FieldValue& value) {
@@ -201,45 +245,123 @@ void ProjectModel::saveQuietly() {
   if (project_ && unsaved_) save();
 }
 
-void ProjectModel::refresh(bool values) {
+void ProjectModel::refresh() {
   if (!project_) return;
-  const std::uint64_t states_ticket = ++states_ticket_;
-  states_worker_.submit([this, project = *project_, frame = frame_, states_ticket] {
-    std::vector<StageStatus> stages;
-    QString error;
+  const std::uint64_t ticket = ++states_ticket_;
+  states_worker_.submit([this, project = *project_, surveyor = surveyor_, ticket] {
+    auto result = std::make_shared<Surveyed>();
+    result->ticket = ticket;
     try {
-      stages = statusOf(project, frame);
-    } catch (const std::exception& e) {
-      error = QString::fromStdString(e.what());
+      result->survey = std::make_shared<const TakeSurvey>(surveyor->survey(project));
+      result->project = std::make_shared<const Project>(project);
+    } catch (const std::exception& e) {  // the border of this thread: said in the window
+      result->error = QString::fromStdString(e.what());
     }
     QMetaObject::invokeMethod(
-        this,
-        [this, stages, error, states_ticket] {
-          if (states_ticket != states_ticket_) return;
-          states_seen_ = states_ticket;
-          if (!error.isEmpty()) Q_EMIT failed("The state of the project cannot be read", error);
-          stages_ = stages;
-          Q_EMIT stagesChanged();
-        },
-        Qt::QueuedConnection);
+        this, [this, result] { take(result); }, Qt::QueuedConnection);
   });
-  if (!values) return;
-  const std::uint64_t values_ticket = ++values_ticket_;
-  values_worker_.submit([this, project = *project_, frame = frame_, values_ticket] {
-    FrameValues found;
+}
+
+void ProjectModel::take(const std::shared_ptr<Surveyed>& result) {
+  if (result->ticket != states_ticket_) return;
+  states_seen_ = result->ticket;
+  if (!result->survey) {
+    ready_ = true;
+    Q_EMIT failed("The state of the project cannot be read", result->error);
+    return;
+  }
+  survey_ = result->survey;
+  cache_.setSource([project = result->project](FrameIndex frame) { return valuesOf(*project, frame); },
+                   survey_->stamps);
+  showStages();
+  showFrame();
+  Q_EMIT memoryChanged();
+}
+
+void ProjectModel::showStages() {
+  if (!survey_) return;
+  stages_ = statusOf(*survey_, services_.pipeline->stages.infos(), frame_);
+  Q_EMIT stagesChanged();
+}
+
+// The nearest frame that has results, the earlier of two; before the first survey the frame itself.
+std::optional<FrameIndex> ProjectModel::frameWithResults() const {
+  if (!survey_) return frame_;
+  const int frames = static_cast<int>(survey_->stamps.size());
+  for (int away = 0; away < frames; ++away) {
+    for (const int f : {frame_.value - away, frame_.value + away}) {
+      if (f >= 0 && f < frames && survey_->stamps[f] != Digest{}) return FrameIndex{f};
+    }
+  }
+  return std::nullopt;
+}
+
+void ProjectModel::showFrame() {
+  const std::optional<FrameIndex> source = frameWithResults();
+  FrameValues found;
+  if (source) {
+    std::vector<FrameIndex> wishes{*source};
+    wishes.insert(wishes.end(), prefetch_.begin(), prefetch_.end());
+    cache_.want(std::move(wishes));
+    const std::optional<FrameCache::Found> held = cache_.find(*source);
+    ready_ = held && held->current;
+    if (!ready_) return;
+    found = held->values;
+    const QString error = QString::fromStdString(held->error);
+    if (!error.isEmpty() && error != told_error_)
+      Q_EMIT failed("The results of this frame cannot be read", error);
+    told_error_ = error;
+  }
+  ready_ = true;
+  const bool own = source == frame_;
+  const FrameValues& before = held_ ? held_->values : values_;
+  const bool same = values_of_ == frame_ && own != held_.has_value() && before.cloud == found.cloud &&
+                    before.materials == found.materials;
+  if (same) return loadMesh();
+  values_of_ = frame_;
+  values_ = own ? found : FrameValues{};
+  held_.reset();
+  if (!own && source) held_ = HeldValues{*source, found};
+  Q_EMIT valuesChanged();
+  loadMesh();
+}
+
+void ProjectModel::prefetch(std::vector<FrameIndex> frames) {
+  prefetch_ = std::move(frames);
+  if (!project_) return;
+  std::vector<FrameIndex> wishes{frameWithResults().value_or(frame_)};
+  wishes.insert(wishes.end(), prefetch_.begin(), prefetch_.end());
+  cache_.want(std::move(wishes));
+}
+
+void ProjectModel::setPassing(bool passing) {
+  passing_ = passing;
+  if (!passing_ && project_ && ready_) loadMesh();
+}
+
+void ProjectModel::loadMesh() {
+  if (passing_ || !values_.cloud) {
+    mesh_seen_ = ++mesh_ticket_;
+    return;
+  }
+  const std::uint64_t ticket = ++mesh_ticket_;
+  mesh_worker_.submit([this, project = *project_, frame = frame_, ticket] {
+    std::shared_ptr<const Mesh> mesh;
     QString error;
     try {
-      found = valuesOf(project, frame);
-    } catch (const std::exception& e) {
+      if (std::optional<Mesh> found = loadFrameMesh(project, frame))
+        mesh = std::make_shared<const Mesh>(std::move(*found));
+    } catch (const std::exception& e) {  // the border of this thread: said in the window
       error = QString::fromStdString(e.what());
     }
     QMetaObject::invokeMethod(
         this,
-        [this, found, error, values_ticket] {
-          if (values_ticket != values_ticket_) return;
-          values_seen_ = values_ticket;
-          if (!error.isEmpty()) Q_EMIT failed("The results of this frame cannot be read", error);
-          values_ = found;
+        [this, mesh, error, ticket] {
+          if (ticket != mesh_ticket_) return;
+          mesh_seen_ = ticket;
+          if (!error.isEmpty()) Q_EMIT failed("The mesh of this frame cannot be read", error);
+          if (!mesh && !values_.mesh) return;
+          values_.mesh = mesh;
           Q_EMIT valuesChanged();
         },
         Qt::QueuedConnection);

@@ -7,6 +7,8 @@
 #include <QTimer>
 
 #include "core/pipeline/frame_result.h"
+#include "core/pipeline/take_survey.h"
+#include "ui/frame_cache.h"
 #include "ui/studio_services.h"
 #include "viewers/latest_worker.h"
 
@@ -21,10 +23,10 @@ struct StageStatus {
   QString detail;                        // why it is blocked or failed
 };
 
-struct FrameValues {
-  std::shared_ptr<const GaussianCloud> cloud;  // null: not there yet
-  std::shared_ptr<const Materials> materials;
-  std::shared_ptr<const Mesh> mesh;
+// A frame without results of its own shows those of the nearest frame that has some.
+struct HeldValues {
+  FrameIndex from;
+  FrameValues values;
 };
 
 class ProjectModel final : public QObject {
@@ -57,13 +59,22 @@ class ProjectModel final : public QObject {
   bool save();
   bool unsaved() const { return unsaved_; }
 
-  // Looks at the disk again: states of all stages; the frame's values, too, when `values`.
-  void refresh(bool values = true);
+  // Looks at the disk again: states of the whole take, then the frame's values where they changed.
+  void refresh();
   const std::vector<StageStatus>& stages() const { return stages_; }
+  std::shared_ptr<const TakeSurvey> survey() const { return survey_; }  // null: not there yet
   const FrameValues& values() const { return values_; }
+  const std::optional<HeldValues>& held() const { return held_; }
+  // values() (or held()) belong to frame() and to the newest survey.
+  bool valuesReady() const { return ready_; }
+  // Frames that will be looked at next, most urgent first.
+  void prefetch(std::vector<FrameIndex> frames);
+  // Meshes are not read while frames pass by.
+  void setPassing(bool passing);
+  const FrameCache& cache() const { return cache_; }
   // States and values of the last refresh have arrived.
   bool settled() const {
-    return !opening_ && states_seen_ == states_ticket_ && values_seen_ == values_ticket_;
+    return !opening_ && states_seen_ == states_ticket_ && mesh_seen_ == mesh_ticket_ && (ready_ || !project_);
   }
 
  Q_SIGNALS:
@@ -74,10 +85,17 @@ class ProjectModel final : public QObject {
   void stagesChanged();
   void frameChanged();
   void valuesChanged();
+  void memoryChanged();  // other frames than before are in memory
 
  private:
   struct Opened;
+  struct Surveyed;
   void adopt(const std::shared_ptr<Opened>& result);
+  void take(const std::shared_ptr<Surveyed>& result);
+  void showStages();
+  void showFrame();
+  std::optional<FrameIndex> frameWithResults() const;
+  void loadMesh();
   void edited();
   void saveQuietly();
 
@@ -86,12 +104,19 @@ class ProjectModel final : public QObject {
   std::shared_ptr<const CaptureSet> capture_;
   FrameIndex frame_;
   std::vector<StageStatus> stages_;
+  std::shared_ptr<const TakeSurvey> survey_;
+  std::shared_ptr<TakeSurveyor> surveyor_;  // used by states_worker_ alone
   FrameValues values_;
-  bool opening_ = false, unsaved_ = false;
+  std::optional<HeldValues> held_;
+  std::optional<FrameIndex> values_of_;  // the frame they were announced for
+  std::vector<FrameIndex> prefetch_;
+  QString told_error_;
+  bool opening_ = false, unsaved_ = false, ready_ = false, passing_ = false;
   // A refresh that a newer one overtakes never answers; the newest always does.
-  std::uint64_t states_ticket_ = 0, states_seen_ = 0, values_ticket_ = 0, values_seen_ = 0;
+  std::uint64_t states_ticket_ = 0, states_seen_ = 0, mesh_ticket_ = 0, mesh_seen_ = 0;
   QTimer autosave_;
-  LatestWorker states_worker_, values_worker_, open_worker_;  // last: they stop first
+  LatestWorker states_worker_, mesh_worker_, open_worker_;
+  FrameCache cache_;  // last, with the workers: they stop first
 };
 
 // Where the project of a capture lies when nobody says: beside it, or in the documents when that is not

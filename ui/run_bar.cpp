@@ -28,7 +28,8 @@ RunBar::RunBar(QWidget* parent)
       words_(new QLabel) {
   run_->setObjectName("primary");
   run_->setText("Run");
-  run_->setToolTip("Compute what is missing of this frame (Ctrl+Enter); the arrow chooses the last stage");
+  run_->setToolTip(
+      "Compute what is missing of this frame (Ctrl+Enter); the arrow chooses frames or the last stage");
   run_->setPopupMode(QToolButton::MenuButtonPopup);
   run_->setMenu(new QMenu(run_));
   run_->setMinimumHeight(30);
@@ -55,8 +56,12 @@ RunBar::RunBar(QWidget* parent)
 
 void RunBar::setStages(const std::vector<StageInfo>& stages) {
   run_->menu()->clear();
+  run_->menu()->addAction("This frame", this, [this] { Q_EMIT runWanted({}); });
+  run_->menu()->addAction("In–out range", this, &RunBar::rangeWanted);
+  run_->menu()->addAction("Whole take", this, &RunBar::takeWanted);
+  run_->menu()->addSeparator();
   for (const StageInfo& stage : stages) {
-    run_->menu()->addAction("Run until " + QString::fromStdString(stage.title), this,
+    run_->menu()->addAction("This frame until " + QString::fromStdString(stage.title), this,
                             [this, id = stage.id] { Q_EMIT runWanted(QString::fromStdString(id)); });
   }
 }

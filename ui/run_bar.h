@@ -33,7 +33,9 @@ class RunBar final : public QWidget {
   QString text() const;
 
  Q_SIGNALS:
-  void runWanted(const QString& until);  // empty: everything
+  void runWanted(const QString& until);  // of the shown frame; empty: everything
+  void rangeWanted();                    // everything from the in to the out point
+  void takeWanted();                     // everything of the whole take
   void stopWanted();
 
  private:

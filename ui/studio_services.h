@@ -21,6 +21,7 @@ struct StudioServices {
   // Writes the sample capture into a folder that does not exist; empty: none comes with the program.
   std::function<void(const std::filesystem::path&, Progress&)> make_sample;
   std::string version;
+  std::uint64_t frame_memory_bytes = 0;  // most that decoded frames may take; 0: as the machine can spare
 };
 
 }  // namespace beam

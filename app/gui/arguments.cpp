@@ -43,9 +43,18 @@ StudioArguments parseArguments(QCoreApplication& application) {
   add("a", "Picture A of the image view: photo, mask, render.CHANNEL or map.NAME.", "ID");
   add("b", "Picture B, under a wipe.", "ID");
   add("stage", "Stage whose settings are shown.", "NAME");
-  add("run", "Start a run of the frame.");
+  add("run", "Start a run.");
+  add("scope", "Frames of that run: frame (the shown one), range (from in to out point) or take.", "NAME",
+      "frame");
   add("until", "Last stage of that run.", "STAGE");
   add("wait-run", "Take the screenshot only when the run has ended.");
+  add("in", "In point of the timeline, a frame by the capture's name.", "NAME");
+  add("out", "Out point of the timeline.", "NAME");
+  add("curve", "Curve below the timeline's lanes: STEP.SCORE, such as surface.fit.seconds.", "NAME");
+  add("play", "Play that many seconds and print the rate that was reached.", "S");
+  add("full-size", "Full-size pictures while playing, too.");
+  add("frame-memory", "Most memory that decoded frames may take; 0: 2000 or a quarter of the machine's.",
+      "MB", "0");
   add("screenshot",
       "Write the window as a PNG file and quit, with the layout as it ships; for reviews without a "
       "person (works under xvfb-run).",
@@ -81,6 +90,16 @@ StudioArguments parseArguments(QCoreApplication& application) {
   a.sky = parser.isSet("sky");
   a.mesh = parser.isSet("mesh");
   a.run = parser.isSet("run");
+  const auto scope = runScopeNamed(parser.value("scope").toStdString());
+  if (!scope) refuse("--scope expects frame, range or take, found \"" + parser.value("scope") + "\"");
+  a.scope = *scope;
+  a.in = parser.value("in");
+  a.out = parser.value("out");
+  a.curve = parser.value("curve");
+  if (parser.isSet("play")) a.play_s = numberOf(parser, "play");
+  a.full_size = parser.isSet("full-size");
+  a.frame_memory_mb = numberOf(parser, "frame-memory");
+  if (a.play_s < 0 || a.frame_memory_mb < 0) refuse("--play and --frame-memory expect no negative number");
   a.wait_run = parser.isSet("wait-run");
   a.device.simd = parser.value("simd").toStdString();
   a.device.threads = static_cast<int>(numberOf(parser, "threads"));

@@ -22,7 +22,12 @@ struct StudioArguments {
   double photo = -1;  // opacity over the camera's render; < 0: as it comes
   bool sky = false, mesh = false, run = false, wait_run = false;
   QString until;
-  double after_s = 0;  // the picture is taken that long after everything has settled
+  RunScope scope = RunScope::Frame;
+  QString in, out, curve;
+  double play_s = 0;  // 0: not
+  bool full_size = false;
+  double frame_memory_mb = 0;  // 0: as the machine can spare
+  double after_s = 0;          // the picture is taken that long after everything has settled
 };
 
 // Throws Error{Usage}. Answers --help and --version itself and ends the process.

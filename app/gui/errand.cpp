@@ -4,11 +4,13 @@
 #include <QApplication>
 #include <QPixmap>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "ui/image_page.h"
 #include "ui/message_panel.h"
 #include "ui/stage_rail.h"
+#include "ui/timeline_panel.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
 
@@ -35,7 +37,8 @@ Errand::Errand(MainWindow& window, const StudioArguments& arguments)
   connect(&timer_, &QTimer::timeout, this, &Errand::tick);
   window_.showView(arguments_.view);
   if (!arguments_.path.isEmpty()) window_.open(arguments_.path.toStdString());
-  if (!arguments_.screenshot.isEmpty()) timer_.start();
+  window_.setFullSizePlay(arguments_.full_size);
+  if (!arguments_.screenshot.isEmpty() || arguments_.play_s > 0) timer_.start();
 }
 
 std::optional<ViewIndex> Errand::cameraNamed(const QString& name) const {
@@ -46,16 +49,22 @@ std::optional<ViewIndex> Errand::cameraNamed(const QString& name) const {
   return std::nullopt;
 }
 
+std::optional<FrameIndex> Errand::frameNamed(const QString& name) const {
+  const auto& frames = window_.model().capture()->frames;
+  const auto found = std::find(frames.begin(), frames.end(), name.toStdString());
+  if (found == frames.end()) return std::nullopt;
+  return FrameIndex{static_cast<std::int32_t>(found - frames.begin())};
+}
+
 void Errand::show() {
   shown_ = true;
-  const auto& frames = window_.model().capture()->frames;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i] == arguments_.frame.toStdString())
-      window_.model().setFrame(FrameIndex{static_cast<std::int32_t>(i)});
+  const QString* const names[] = {&arguments_.frame, &arguments_.in, &arguments_.out};
+  for (const QString* name : names) {
+    if (!name->isEmpty() && !frameNamed(*name)) return giveUp("the capture has no frame \"" + *name + "\"");
   }
-  if (!arguments_.frame.isEmpty() && window_.model().frameName() != arguments_.frame) {
-    return giveUp("the capture has no frame \"" + arguments_.frame + "\"");
-  }
+  if (!arguments_.in.isEmpty()) window_.player().setIn(frameNamed(arguments_.in)->value);
+  if (!arguments_.out.isEmpty()) window_.player().setOut(frameNamed(arguments_.out)->value);
+  if (!arguments_.frame.isEmpty()) window_.model().setFrame(*frameNamed(arguments_.frame));
   SplatView& splats = window_.splatView();
   splats.setChannel(arguments_.channel);
   splats.setYaw(static_cast<float>(arguments_.yaw_deg) / kDegrees);
@@ -75,12 +84,41 @@ void Errand::show() {
   if (!arguments_.environment.isEmpty()) window_.open(arguments_.environment.toStdString());
   if (!arguments_.select.isEmpty()) window_.rail().select(arguments_.select.toStdString());
   if (arguments_.run) {
-    window_.run(arguments_.until.toStdString());
+    window_.run(arguments_.until.toStdString(), arguments_.scope);
     run_started_ = true;
   }
 }
 
+// Before the picture is taken, so that it shows the window at play.
+bool Errand::playing() {
+  if (arguments_.play_s <= 0 || played_) return false;
+  if (!play_since_.isValid()) {
+    play_since_.start();
+    window_.player().play();
+  }
+  if (static_cast<double>(play_since_.elapsed()) < 1000 * arguments_.play_s) return true;
+  played_ = true;
+  reportPlay();
+  return false;
+}
+
+void Errand::reportPlay() {
+  const PlaybackClock& clock = window_.player().clock();
+  const FrameCache& cache = window_.model().cache();
+  const std::vector<bool> held = cache.held(window_.model().capture()->frames.size());
+  std::printf("played %.2f of %g fps, %d frames left out, %td frames in memory (%.0f of %.0f MB)\n",
+              clock.rate(), clock.takeRate(), clock.dropped(), std::count(held.begin(), held.end(), true),
+              1e-6 * static_cast<double>(cache.bytes()), 1e-6 * static_cast<double>(cache.budget()));
+  std::fflush(stdout);
+}
+
 void Errand::tick() {
+  if (play_since_.isValid() && playing()) return;
+  if (played_) {
+    timer_.stop();
+    if (!arguments_.screenshot.isEmpty()) takePicture();
+    return;
+  }
   const bool runs = run_started_ && window_.job().busy();
   const bool busy =
       (runs && arguments_.wait_run) || (!runs && !window_.settled()) || window_.model().opening();
@@ -89,7 +127,13 @@ void Errand::tick() {
     return;
   }
   if (!settled_since_.isValid()) settled_since_.start();
-  if (static_cast<double>(settled_since_.elapsed()) >= kCalm_ms + 1000 * arguments_.after_s) takePicture();
+  if (static_cast<double>(settled_since_.elapsed()) >= kCalm_ms + 1000 * arguments_.after_s) {
+    if (!arguments_.curve.isEmpty() && !window_.timeline().chooseCurve(arguments_.curve)) {
+      return giveUp("there is no curve \"" + arguments_.curve + "\" (yet)");
+    }
+    arguments_.curve.clear();
+    if (!playing()) takePicture();
+  }
 }
 
 void Errand::takePicture() {

@@ -18,7 +18,10 @@ class Errand final : public QObject {
  private:
   void show();  // the project is open
   void tick();
+  bool playing();  // as it was asked to; starts it
+  void reportPlay();
   void takePicture();
+  std::optional<FrameIndex> frameNamed(const QString& name) const;
   void giveUp(const QString& why);
   std::optional<ViewIndex> cameraNamed(const QString& name) const;
 
@@ -26,7 +29,8 @@ class Errand final : public QObject {
   StudioArguments arguments_;
   QTimer timer_;
   QElapsedTimer settled_since_;
-  bool shown_ = false, values_came_ = false, run_started_ = false;
+  bool shown_ = false, values_came_ = false, run_started_ = false, played_ = false;
+  QElapsedTimer play_since_;
 };
 
 }  // namespace beam

@@ -39,6 +39,7 @@ int runStudio(QApplication& application) {
         .make_sample = [](const std::filesystem::path& folder,
                           beam::Progress& progress) { beam::makeSample(folder, {}, progress); },
         .version = beam::versionText(),
+        .frame_memory_bytes = static_cast<std::uint64_t>(1e6 * arguments.frame_memory_mb),
     };
     beam::applyTheme(application);
     beam::MainWindow window(std::move(studio),

@@ -65,14 +65,24 @@ void SplatView::setScene(const SplatScene& scene, const QString& caption) {
   }
   if (!framed_) frameScene();
   framed_ = true;
-  changed(Pace::Resting);
+  if (passing_ == 0) return changed(Pace::Resting);
+  request(passing_);
+  update();
+}
+
+void SplatView::setPassing(int divisor) {
+  const bool rests = passing_ > 0 && divisor == 0;
+  passing_ = divisor;
+  if (rests) changed(Pace::Resting);
 }
 
 void SplatView::setCapture(std::shared_ptr<const CaptureSet> capture, FrameIndex frame) {
-  if (capture != capture_) framed_ = false;
+  const bool same = capture == capture_;
   capture_ = std::move(capture);
   frame_ = frame;
   photo_of_.reset();
+  if (same) return loadPhoto();
+  framed_ = false;
   lookThrough(std::nullopt);
 }
 
@@ -207,6 +217,7 @@ void SplatView::take(SplatPicture picture, int divisor, std::uint64_t ticket) {
   shown_ = std::move(picture);
   shown_ticket_ = ticket;
   shown_divisor_ = divisor;
+  if (shown_.milliseconds > 0) expected_milliseconds_ = shown_.milliseconds * divisor * divisor;
   if (divisor == 1 && shown_.milliseconds > 0) full_milliseconds_ = shown_.milliseconds;
   setPicture(0, shown_.pixels.empty() ? nullptr : std::make_shared<Image<u8vec4>>(std::move(shown_.pixels)));
   Q_EMIT pictureShown();

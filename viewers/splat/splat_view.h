@@ -41,6 +41,12 @@ class SplatView final : public PictureCanvas {
   bool handleKey(const QKeyEvent& event);
   // The newest full-size picture is on the screen.
   bool settled() const;
+  // The newest picture that was asked for is on the screen, whatever its size.
+  bool upToDate() const { return !scene_.cloud || shown_ticket_ == newest_ticket_; }
+  // Frames pass by: every scene is drawn once, at the width and height divided by this; 0: they do not.
+  void setPassing(int divisor);
+  // What a full-size picture takes, told from the last one of any size.
+  double expectedMilliseconds() const { return expected_milliseconds_; }
   double fullPictureMilliseconds() const { return full_milliseconds_; }  // the last one took
 
  Q_SIGNALS:
@@ -89,7 +95,8 @@ class SplatView final : public PictureCanvas {
   SplatPicture shown_;
   int shown_divisor_ = 0;
   std::uint64_t newest_ticket_ = 0, shown_ticket_ = 0;
-  double full_milliseconds_ = 200;  // of the last full picture
+  double full_milliseconds_ = 200, expected_milliseconds_ = 200;  // of the last full picture; of the next
+  int passing_ = 0;
   std::optional<ViewIndex> photo_of_;
   QString photo_note_;
 

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// The timeline over a take of six small frames on a virtual display: lanes, going to a frame, playing,
+// running a range while another frame is looked at.
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QDeadlineTimer>
+#include <QKeyEvent>
+#include <QMouseEvent>
+
+#include <atomic>
+#include <set>
+#include <thread>
+
+#include "core/io/splat_ply.h"
+#include "tests/support/splat_shapes.h"
+#include "tests/support/temp_dir.h"
+#include "ui/main_window.h"
+#include "ui/timeline_panel.h"
+#include "viewers/gl/functions.h"
+#include "viewers/splat/splat_view.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::TempDir;
+
+constexpr int kFrames = 6;
+
+template <class Condition>
+bool waitFor(Condition&& condition, int patience_ms = 20000) {
+  for (QDeadlineTimer deadline(patience_ms); !deadline.hasExpired();) {
+    QApplication::processEvents(QEventLoop::AllEvents, 20);
+    if (condition()) return true;
+  }
+  return false;
+}
+
+TakeSurvey surveyOf(std::vector<CellState> surface, std::vector<CellState> materials) {
+  TakeSurvey survey;
+  survey.frames.resize(surface.size());
+  std::vector<std::string> notes(surface.size());
+  survey.lanes = {{"surface", "Surface", "", std::move(surface), notes},
+                  {"materials", "Materials", "", std::move(materials), notes}};
+  return survey;
+}
+
+TEST(LaneShade, ShowsWhatIsOnDiskWhereNoRunGoesOn) {
+  using enum CellState;
+  const TakeSurvey survey = surveyOf({Done, Stale, Failed, Empty}, {Running, Blocked, Empty, Empty});
+  RunOverlay none;
+  none.frames = {0, 1, 2, 3};
+  EXPECT_EQ(shadeOf(survey, 0, 0, none), LaneShade::Done);
+  EXPECT_EQ(shadeOf(survey, 0, 1, none), LaneShade::Stale);
+  EXPECT_EQ(shadeOf(survey, 0, 2, none), LaneShade::Failed);
+  EXPECT_EQ(shadeOf(survey, 0, 3, none), LaneShade::Empty);
+  EXPECT_EQ(shadeOf(survey, 1, 0, none), LaneShade::Running);
+  EXPECT_EQ(shadeOf(survey, 1, 1, none), LaneShade::Blocked);
+}
+
+TEST(LaneShade, QueuesTheRunsFramesUntilItsLastStage) {
+  using enum CellState;
+  const TakeSurvey survey = surveyOf({Done, Stale, Empty, Empty}, {Empty, Empty, Empty, Empty});
+  RunOverlay run{{0, 1, 2}, "surface", "surface", 1, true};
+  EXPECT_EQ(shadeOf(survey, 0, 0, run), LaneShade::Done);
+  EXPECT_EQ(shadeOf(survey, 0, 1, run), LaneShade::Running);
+  EXPECT_EQ(shadeOf(survey, 0, 2, run), LaneShade::Queued);
+  EXPECT_EQ(shadeOf(survey, 0, 3, run), LaneShade::Empty) << "not in the run";
+  EXPECT_EQ(shadeOf(survey, 1, 2, run), LaneShade::Empty) << "beyond its last stage";
+  run.until.clear();
+  EXPECT_EQ(shadeOf(survey, 1, 2, run), LaneShade::Queued);
+}
+
+struct BallOptions {
+  int size = 40;
+};
+void describe(Fields& f, BallOptions& o) {
+  f.field({.name = "size", .label = "Size", .help = "Gaussians.", .min = 1, .max = 1e6}, o.size);
+}
+
+std::atomic<int> g_held_frame{-1};  // a step of this frame waits until it is another
+
+// Writes a ball that wanders with the frame.
+class BallStage final : public StageOf<BallOptions> {
+ public:
+  explicit BallStage(StageInfo info) : info_(std::move(info)) {}
+  const StageInfo& info() const override { return info_; }
+  void run(std::string_view, StepContext& c) const override {
+    while (g_held_frame == c.frame.value) {
+      c.progress.check();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    GaussianCloud cloud;
+    testing::addSphere(cloud, vec3(0.1f * static_cast<float>(c.frame.value), 1, 0), 0.3f, options_.size);
+    c.scores["gaussians"] = static_cast<double>(cloud.size()) + c.frame.value;
+    if (info_.id == "surface") return writeSplatPly(c.folder / kCloudFile, cloud, nullptr);
+    Materials m;
+    m.roughness.assign(cloud.size(), 0.5f);
+    m.base_color = ShBlock(cloud.size(), 3);
+    m.ambient_occlusion = ShBlock(cloud.size(), 1);
+    writeSplatPly(c.folder / kMaterialsFile, cloud, &m);
+  }
+
+ private:
+  StageInfo info_;
+};
+
+// Every frame has a picture of its own.
+class PlainPictures final : public FrameSource {
+ public:
+  bool has(ViewIndex, FrameIndex) const override { return true; }
+  Image<u8vec3> photo(ViewIndex, FrameIndex frame) const override {
+    return Image<u8vec3>(200, 200, u8vec3(static_cast<std::uint8_t>(frame.value)));
+  }
+  Image<std::uint8_t> mask(ViewIndex, FrameIndex) const override { return {}; }
+};
+
+ImportedCapture take(const fs::path&, const ImportOptions&) {
+  ImportedCapture imported;
+  imported.set.name = "take";
+  imported.set.views.push_back({"cam", {{300, 300, 100, 100}, 200, 200, {}}, Split::Train});
+  for (int f = 0; f < kFrames; ++f) imported.set.frames.push_back("00000" + std::to_string(f));
+  imported.set.frames_per_second = 25;
+  imported.set.source = std::make_shared<PlainPictures>();
+  imported.layout = "memory";
+  return imported;
+}
+
+class Timeline : public ::testing::Test {
+ protected:
+  Timeline() : window(services(), MainWindow::Layout::Fresh) {
+    g_held_frame = -1;
+    fs::create_directory(folder / "capture");
+    window.show();
+    window.open(folder / "capture");
+    EXPECT_TRUE(waitFor([&] { return window.model().isOpen() && window.settled(); }));
+  }
+  static StudioServices services() {
+    auto setup = std::make_shared<PipelineSetup>();
+    const std::vector<Reads> pictures{Reads::Pictures};
+    setup->stages.add([=] {
+      return std::make_unique<BallStage>(
+          StageInfo{"surface",
+                    "Surface",
+                    "",
+                    {{.id = "fit", .title = "Fit", .reads = pictures},
+                     {.id = "refine", .title = "Refine", .inputs = {"surface.fit"}},
+                     {.id = "mesh", .title = "Mesh", .inputs = {"surface.refine"}}}});
+    });
+    setup->stages.add([] {
+      return std::make_unique<BallStage>(StageInfo{
+          "materials", "Materials", "", {{.id = "fit", .title = "Fit", .inputs = {"surface.refine"}}}});
+    });
+    setup->open_capture = take;
+    const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
+    return {
+        .pipeline = setup, .job_device = device, .view_device = device, .make_sample = {}, .version = "test"};
+  }
+  void runToTheEnd(RunScope scope, const std::string& until = {}) {
+    window.run(until, scope);
+    ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
+  }
+  CellState cell(std::size_t lane, int frame) { return window.model().survey()->lanes[lane].cells[frame]; }
+  void key(int code) {
+    QKeyEvent press(QEvent::KeyPress, code, Qt::NoModifier);
+    QApplication::sendEvent(&window, &press);
+  }
+
+  TempDir folder;
+  MainWindow window;
+};
+
+TEST_F(Timeline, GoesToTheFrameThatIsPressedAndDraggedTo) {
+  TimelineLanes& lanes = window.timeline().lanes();
+  ASSERT_TRUE(waitFor([&] { return lanes.frameAt(lanes.centerOf(4)) == 4; }));
+  QMouseEvent press(QEvent::MouseButtonPress, QPointF(lanes.centerOf(4), 30), Qt::LeftButton, Qt::LeftButton,
+                    Qt::NoModifier);
+  QApplication::sendEvent(&lanes, &press);
+  EXPECT_EQ(window.model().frame().value, 4);
+  QMouseEvent move(QEvent::MouseMove, QPointF(lanes.centerOf(2), 30), Qt::NoButton, Qt::LeftButton,
+                   Qt::NoModifier);
+  QApplication::sendEvent(&lanes, &move);
+  EXPECT_EQ(window.model().frame().value, 2);
+  EXPECT_EQ(lanes.frameAt(-100), 0);
+  EXPECT_EQ(lanes.frameAt(1e6), kFrames - 1);
+}
+
+TEST_F(Timeline, KeysStepSetThePointsAndStopAtTheEnds) {
+  key(Qt::Key_Right);
+  key(Qt::Key_Right);
+  EXPECT_EQ(window.model().frame().value, 2);
+  key(Qt::Key_I);
+  key(Qt::Key_End);
+  EXPECT_EQ(window.model().frame().value, kFrames - 1);
+  key(Qt::Key_Right);
+  EXPECT_EQ(window.model().frame().value, kFrames - 1);
+  key(Qt::Key_Left);
+  key(Qt::Key_O);
+  EXPECT_EQ(window.player().range(), (FrameRange{2, 4}));
+}
+
+TEST_F(Timeline, RunsTheRangeAloneAndHoldsTheNearestSolvedFrame) {
+  window.player().setIn(1);
+  window.player().setOut(2);
+  runToTheEnd(RunScope::Range);
+  for (int f = 0; f < kFrames; ++f) {
+    EXPECT_EQ(cell(1, f), f == 1 || f == 2 ? CellState::Done : CellState::Empty) << f;
+  }
+  EXPECT_FALSE(window.model().values().cloud) << "frame 0 has no result";
+  ASSERT_TRUE(window.model().held());
+  EXPECT_EQ(window.model().held()->from.value, 1);
+  window.player().goTo(2);
+  ASSERT_TRUE(waitFor([&] { return window.settled(); }));
+  EXPECT_TRUE(window.model().values().materials);
+  EXPECT_FALSE(window.model().held());
+}
+
+TEST_F(Timeline, OffersTheScoresOfTheTakeAsCurves) {
+  EXPECT_FALSE(window.timeline().chooseCurve("materials.fit.gaussians"));
+  runToTheEnd(RunScope::Take);
+  ASSERT_TRUE(window.timeline().chooseCurve("materials.fit.gaussians"));
+  const SurveyCurve* curve = window.model().survey()->curve("materials.fit.gaussians");
+  EXPECT_EQ(curve->values[3] - curve->values[0], 3);
+}
+
+TEST_F(Timeline, PlaysInTheRangeFromMemoryAndSaysTheRate) {
+  runToTheEnd(RunScope::Take);
+  window.player().setIn(1);
+  window.player().setOut(4);
+  std::set<int> seen;
+  QObject::connect(&window.model(), &ProjectModel::frameChanged, &window,
+                   [&] { seen.insert(window.model().frame().value); });
+  key(Qt::Key_Space);
+  ASSERT_TRUE(window.player().playing());
+  ASSERT_TRUE(waitFor([&] { return seen.size() == 4 && window.player().clock().rate() > 0; }));
+  EXPECT_EQ(seen, (std::set<int>{1, 2, 3, 4}));
+  EXPECT_TRUE(waitFor([&] { return window.timeline().text().contains("of 25 fps"); }))
+      << window.timeline().text().toStdString();
+  key(Qt::Key_Space);
+  EXPECT_FALSE(window.player().playing());
+  ASSERT_TRUE(waitFor([&] { return window.settled(); }));
+  EXPECT_TRUE(window.model().values().materials);
+  const std::vector<bool> held = window.model().cache().held(kFrames);
+  EXPECT_EQ(std::count(held.begin() + 1, held.begin() + 5, true), 4);
+}
+
+TEST_F(Timeline, StopsAtTheOutPointWithoutALoop) {
+  runToTheEnd(RunScope::Take);
+  window.player().setLoop(false);
+  window.player().goTo(3);
+  window.player().play();
+  ASSERT_TRUE(waitFor([&] { return !window.player().playing(); }));
+  EXPECT_EQ(window.model().frame().value, kFrames - 1);
+  EXPECT_TRUE(waitFor([&] { return window.settled(); }));
+}
+
+// Frames 0 to 2 are there, 3 is at work: the take plays, and shows what is solved.
+TEST_F(Timeline, PlaysWhileLaterFramesAreStillBeingSolved) {
+  g_held_frame = 3;
+  window.run({}, RunScope::Take);
+  ASSERT_TRUE(waitFor([&] { return window.model().survey() && cell(1, 2) == CellState::Done; }));
+  window.player().setOut(2);
+  window.player().play();
+  ASSERT_TRUE(waitFor([&] { return window.player().clock().rate() > 0; }));
+  EXPECT_TRUE(window.job().busy());
+  EXPECT_TRUE(window.model().values().materials);
+  g_held_frame = -1;
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && cell(1, kFrames - 1) == CellState::Done; }));
+  EXPECT_TRUE(window.player().playing()) << "the end of a run does not stop the picture";
+  window.player().pause();
+  EXPECT_TRUE(waitFor([&] { return window.settled(); }));
+}
+
+TEST_F(Timeline, ShowsANewResultOfTheShownFrame) {
+  runToTheEnd(RunScope::Frame, "surface");
+  ASSERT_TRUE(window.model().values().cloud);
+  EXPECT_FALSE(window.model().values().materials);
+  runToTheEnd(RunScope::Frame);
+  EXPECT_TRUE(waitFor([&] { return window.model().values().materials != nullptr; }));
+}
+
+}  // namespace
+}  // namespace beam
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
+  QApplication application(argc, argv);
+  return RUN_ALL_TESTS();
+}
