@@ -73,6 +73,7 @@ MainWindow::MainWindow(StudioServices services, Layout layout)
     : services_(services),
       model_(std::move(services)),
       player_(model_, [this] { return viewFollows(); }),
+      joints_(model_),
       layout_(layout) {
   setAcceptDrops(true);
   setMinimumSize(1000, 640);
@@ -192,7 +193,7 @@ void MainWindow::makeDocks() {
   QDockWidget* timeline = dock("timeline", "Timeline", timeline_, Qt::BottomDockWidgetArea);
   tabifyDockWidget(timeline, bottom);
   timeline->raise();
-  resizeDocks({timeline}, {190}, Qt::Vertical);
+  resizeDocks({timeline}, {235}, Qt::Vertical);
   settings_->setStage(rail_->selected());
   reading_ = new QLabel;
   state_words_ = new QLabel;
@@ -216,7 +217,7 @@ bool MainWindow::viewSettled() const {
     case StudioView::Image:
       return images_->view().settled();
     case StudioView::Scene:
-      return scene_->settled();
+      return joints_.settled() && scene_->settled();
   }
   return true;
 }

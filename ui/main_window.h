@@ -6,6 +6,7 @@
 #include <QMainWindow>
 
 #include "ui/job_bridge.h"
+#include "ui/joint_source.h"
 #include "ui/light_library.h"
 #include "ui/player.h"
 #include "ui/project_model.h"
@@ -58,6 +59,7 @@ class MainWindow final : public QMainWindow {
   ImagePage& imagePage() { return *images_; }
   SceneView& sceneView() { return *scene_; }
   Player& player() { return player_; }
+  JointSource& joints() { return joints_; }
   TimelinePanel& timeline() { return *timeline_; }
   // Pictures at full size while playing, too, however slow.
   void setFullSizePlay(bool full) { full_size_play_ = full; }
@@ -113,6 +115,7 @@ class MainWindow final : public QMainWindow {
   JobBridge job_;
   SampleMaker sample_;
   Player player_;
+  JointSource joints_;
   Layout layout_;
   RunOverlay run_;           // the run that is going on
   bool previewing_ = false;  // of the shown frame

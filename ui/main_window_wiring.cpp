@@ -45,6 +45,12 @@ void MainWindow::connectViews() {
     if (views_->currentWidget() == images_) images_->setLight({lights_.light(), splat_->state().yaw_rad});
     showValuesIn(shownView());
   });
+  connect(scene_, &SceneView::jointPicked, &joints_, &JointSource::pick);
+  connect(&joints_, &JointSource::changed, this, [this] {
+    const JointsShown& shown = joints_.shown();
+    scene_->setJoints(shown.trails, shown.hint);
+    scene_->setInfluence(shown.influence ? joints_.picked() : -1, shown.influence);
+  });
   connect(splat_, &SplatView::hovered, reading_, &QLabel::setText);
   connect(splat_, &SplatView::pictureShown, this, &MainWindow::showStatus);
   connect(&images_->view(), &ImageView::hovered, reading_, &QLabel::setText);
@@ -147,11 +153,13 @@ void MainWindow::showPlaying() {
   }
   previewing_ = false;
   const double interval_ms = 1000 / player_.clock().takeRate();
-  const int divisor = full_size_play_ ? 1 : playDivisor(splat_->expectedMilliseconds(), interval_ms);
+  const int divisor = full_size_play_ ? 1
+                                      : playDivisor(splat_->fullPictureMilliseconds(),
+                                                    splat_->halfPictureMilliseconds(), interval_ms);
   splat_->setPassing(divisor);
   timeline_->setPictureNote(shownView() != StudioView::Splat || divisor == 1 ? QString()
-                            : divisor == 2                                   ? "half size while playing"
-                                                                             : "quarter size while playing");
+                            : divisor == 2                                   ? "half size"
+                                                                             : "quarter size");
 }
 
 void MainWindow::cancelRun() {
@@ -217,6 +225,7 @@ void MainWindow::showValuesIn(StudioView view) {
     case StudioView::Scene:
       scene_->setCloud(values.cloud);
       scene_->setMesh(values.mesh);
+      if (shownView() == StudioView::Scene) joints_.refresh();
   }
 }
 
@@ -224,6 +233,7 @@ void MainWindow::showStages() {
   if (player_.playing()) return;  // the rail tells of one frame: of the one that is looked at at rest
   rail_->setStages(model_.stages());
   images_->refresh();
+  if (shownView() == StudioView::Scene) joints_.refresh();
 }
 
 void MainWindow::showFinished(const JobFinished& outcome) {

@@ -23,7 +23,7 @@ const char* const kShadeWords[] = {"to do",  "queued", "running", "done", "stale
 QColor colorOf(LaneShade shade) {
   switch (shade) {
     case LaneShade::Empty:
-      return QColor("#2d3035");
+      return QColor("#363a40");
     case LaneShade::Queued:
       return QColor("#40536d");
     case LaneShade::Running:
@@ -118,6 +118,8 @@ void TimelineLanes::setMemory(std::vector<bool> held) {
   held_ = std::move(held);
   update();
 }
+
+void TimelineLanes::setMemoryWords(const QString& words) { memory_words_ = words; }
 
 void TimelineLanes::setRun(RunOverlay run) {
   run_ = std::move(run);
@@ -324,9 +326,9 @@ QString TimelineLanes::tipAt(QPointF at) const {
     const double v = curve->values[f];
     return QString("%1: %2 %3").arg(frame, curve_, std::isfinite(v) ? QString::number(v, 'g', 6) : "none");
   }
-  if (memoryBox().contains(at)) {
+  if (memoryBox().adjusted(0, -2, 0, 3).contains(at)) {
     const bool held = f < static_cast<int>(held_.size()) && held_[f];
-    return frame + (held ? ": in memory" : ": not in memory");
+    return frame + (held ? ": in memory" : ": not in memory") + "\n" + memory_words_;
   }
   return frame;
 }

@@ -39,6 +39,7 @@ class TimelineLanes final : public QWidget {
   void setFrame(int frame);
   void setRange(FrameRange range);
   void setMemory(std::vector<bool> held);
+  void setMemoryWords(const QString& words);  // told over the bar
   void setRun(RunOverlay run);
   void setCurve(const QString& name);  // empty: none
 
@@ -75,7 +76,7 @@ class TimelineLanes final : public QWidget {
   FrameRange range_{0, -1};
   std::vector<bool> held_;
   RunOverlay run_;
-  QString curve_;
+  QString curve_, memory_words_;
 };
 
 }  // namespace beam

@@ -5,8 +5,7 @@
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
-#include <QScrollArea>
-#include <QStyle>
+#include <QPainter>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -24,11 +23,50 @@ QToolButton* button(QHBoxLayout* row, const QString& text, const QString& tip) {
   return made;
 }
 
-QLabel* quietLabel(QHBoxLayout* row) {
+// Words that take what room is left; the row never gets wider for them.
+QLabel* quietLabel(QHBoxLayout* row, Qt::Alignment alignment) {
   auto* label = new QLabel;
   label->setObjectName("quiet");
-  row->addWidget(label);
+  label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  label->setAlignment(alignment | Qt::AlignVCenter);
+  row->addWidget(label, 1);
   return label;
+}
+
+enum class Sign { Play, Pause, Back, Next, First, Last };
+
+// The style's own are dark on dark.
+QIcon iconOf(Sign sign) {
+  QPixmap picture(32, 32);
+  picture.fill(Qt::transparent);
+  QPainter p(&picture);
+  p.setRenderHint(QPainter::Antialiasing);
+  p.setPen(Qt::NoPen);
+  p.setBrush(QColor("#d9dce1"));
+  if (sign == Sign::Back || sign == Sign::First) {
+    p.translate(32, 0);
+    p.scale(-1, 1);
+  }
+  switch (sign) {
+    case Sign::Play:
+      p.drawPolygon(QPolygonF({{8, 4}, {28, 16}, {8, 28}}));
+      break;
+    case Sign::Pause:
+      p.drawRect(7, 5, 7, 22);
+      p.drawRect(18, 5, 7, 22);
+      break;
+    case Sign::Back:
+    case Sign::Next:
+      p.drawRect(6, 7, 3, 18);
+      p.drawPolygon(QPolygonF({{12, 7}, {27, 16}, {12, 25}}));
+      break;
+    case Sign::First:
+    case Sign::Last:
+      p.drawPolygon(QPolygonF({{6, 7}, {21, 16}, {6, 25}}));
+      p.drawRect(22, 7, 4, 18);
+      break;
+  }
+  return QIcon(picture);
 }
 
 // "surface.fit.gaussians" -> "Surface fit: gaussians"
@@ -48,49 +86,42 @@ TimelinePanel::TimelinePanel(ProjectModel& model, Player& player, QWidget* paren
   row->setContentsMargins(8, 4, 8, 2);
   row->setSpacing(4);
   const auto act = [this](QToolButton* b, auto slot) { connect(b, &QToolButton::clicked, this, slot); };
-  const auto icon = [this](QToolButton* b, QStyle::StandardPixmap name) {
-    b->setIcon(style()->standardIcon(name));
-  };
   auto* to_in = button(row, {}, "To the in point (Home)");
-  icon(to_in, QStyle::SP_MediaSkipBackward);
+  to_in->setIcon(iconOf(Sign::First));
   act(to_in, [this] { player_.goTo(player_.range().first); });
   auto* back = button(row, {}, "Previous frame (left arrow, or comma)");
-  icon(back, QStyle::SP_MediaSeekBackward);
+  back->setIcon(iconOf(Sign::Back));
   act(back, [this] { player_.step(-1); });
   play_ = button(row, {}, "Play or pause (Space)");
   act(play_, [this] { player_.toggle(); });
   auto* next = button(row, {}, "Next frame (right arrow, or full stop)");
-  icon(next, QStyle::SP_MediaSeekForward);
+  next->setIcon(iconOf(Sign::Next));
   act(next, [this] { player_.step(1); });
   auto* to_out = button(row, {}, "To the out point (End)");
-  icon(to_out, QStyle::SP_MediaSkipForward);
+  to_out->setIcon(iconOf(Sign::Last));
   act(to_out, [this] { player_.goTo(player_.range().last); });
   loop_ = button(row, "Loop", "Play again from the in point (L)");
   loop_->setCheckable(true);
   act(loop_, [this] { player_.setLoop(loop_->isChecked()); });
   act(button(row, "In", "In point here (I)"), [this] { player_.setIn(model_.frame().value); });
   act(button(row, "Out", "Out point here (O)"), [this] { player_.setOut(model_.frame().value); });
-  whole_ = button(row, "Whole take", "Take in and out points away");
+  whole_ = button(row, "All", "The whole take: in and out points go away");
   act(whole_, [this] { player_.clearRange(); });
-  where_ = quietLabel(row);
-  rate_ = quietLabel(row);
-  row->addStretch();
-  memory_ = quietLabel(row);
+  where_ = quietLabel(row, Qt::AlignLeft);
+  row->setSpacing(4);
   curves_ = new QComboBox;
   curves_->setToolTip("The curve below the lanes; press it to go to a frame");
   curves_->setFocusPolicy(Qt::NoFocus);
+  curves_->setMinimumContentsLength(16);
+  curves_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   curves_->addItem("no curve", QString());
   row->addWidget(curves_);
-  auto* scroll = new QScrollArea;
-  scroll->setWidget(lanes_);
-  scroll->setWidgetResizable(true);
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
   column->addLayout(row);
-  column->addWidget(scroll, 1);
+  column->addWidget(lanes_);
+  column->addStretch();
 
   connect(curves_, QOverload<int>::of(&QComboBox::activated), this,
           [this] { lanes_->setCurve(curves_->currentData().toString()); });
@@ -162,7 +193,7 @@ void TimelinePanel::setPictureNote(const QString& note) {
   showState();
 }
 
-QString TimelinePanel::text() const { return where_->text() + "   " + rate_->text(); }
+QString TimelinePanel::text() const { return where_->text(); }
 
 void TimelinePanel::fillCurves() {
   const QString chosen = curves_->currentData().toString();
@@ -183,34 +214,25 @@ void TimelinePanel::showState() {
   lanes_->setRange(range);
   loop_->setChecked(player_.clock().loop());
   whole_->setEnabled(open && !player_.clock().wholeTake());
-  play_->setIcon(style()->standardIcon(player_.playing() ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
-  if (!open) {
-    where_->setText({});
-    rate_->setText({});
-    return;
-  }
-  where_->setText(QString("  %1 of %2").arg(model_.frame().value + 1).arg(player_.clock().frames()));
-  if (!player_.clock().wholeTake()) {
-    const auto& names = model_.capture()->frames;
-    where_->setText(QString("%1 · in %2, out %3: %4 frames")
-                        .arg(where_->text(), QString::fromStdString(names[range.first]),
-                             QString::fromStdString(names[range.last]))
-                        .arg(range.size()));
-  }
-  QString rate = " · " + player_.rateText();
-  if (player_.clock().dropped() > 0) rate += QString(" · %1 left out").arg(player_.clock().dropped());
-  if (!note_.isEmpty()) rate += " · " + note_;
-  rate_->setText(rate);
+  play_->setIcon(iconOf(player_.playing() ? Sign::Pause : Sign::Play));
+  if (!open) return where_->setText({});
+  QStringList words{player_.rateText()};
+  if (!note_.isEmpty()) words << note_;
+  if (!player_.clock().wholeTake())
+    words << QString("%1 of %2 frames").arg(range.size()).arg(player_.clock().frames());
+  if (player_.clock().dropped() > 0) words << QString("%1 left out").arg(player_.clock().dropped());
+  where_->setText("  " + words.join(" · "));
+  where_->setToolTip(where_->text());
 }
 
 void TimelinePanel::showMemory() {
   const std::size_t frames = model_.capture() ? model_.capture()->frames.size() : 0;
   const std::vector<bool> held = model_.cache().held(frames);
   lanes_->setMemory(held);
-  memory_->setText(QString("%1 frames in memory, %2 of %3 MB  ")
-                       .arg(std::count(held.begin(), held.end(), true))
-                       .arg(1e-6 * static_cast<double>(model_.cache().bytes()), 0, 'f', 0)
-                       .arg(1e-6 * static_cast<double>(model_.cache().budget()), 0, 'f', 0));
+  lanes_->setMemoryWords(QString("%1 frames in memory, %2 of %3 MB")
+                             .arg(std::count(held.begin(), held.end(), true))
+                             .arg(1e-6 * static_cast<double>(model_.cache().bytes()), 0, 'f', 0)
+                             .arg(1e-6 * static_cast<double>(model_.cache().budget()), 0, 'f', 0));
 }
 
 }  // namespace beam

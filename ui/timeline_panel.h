@@ -39,7 +39,7 @@ class TimelinePanel final : public QWidget {
   Player& player_;
   TimelineLanes* lanes_;
   QToolButton *play_, *loop_, *whole_;
-  QLabel *where_, *rate_, *memory_;
+  QLabel* where_;
   QComboBox* curves_;
   QString note_;
   std::shared_ptr<const TakeSurvey> survey_;  // what the lanes show

@@ -65,11 +65,10 @@ double PlaybackClock::rate() const {
   return static_cast<double>(shown_s_.size() - 1) / (shown_s_.back() - shown_s_.front());
 }
 
-int playDivisor(double full_picture_ms, double interval_ms) {
-  for (const int divisor : {1, 2}) {
-    if (full_picture_ms / (divisor * divisor) <= kDrawingShare * interval_ms) return divisor;
-  }
-  return 4;
+int playDivisor(double full_ms, double half_ms, double interval_ms) {
+  const double most_ms = kDrawingShare * interval_ms;
+  if (full_ms <= most_ms) return 1;
+  return half_ms <= most_ms ? 2 : 4;
 }
 
 }  // namespace beam

@@ -57,8 +57,8 @@ class PlaybackClock {
   int dropped_ = 0;
 };
 
-// Full, half or quarter size: the largest whose pictures keep up with `interval_ms`, told from how long a
-// full one takes.
-int playDivisor(double full_picture_ms, double interval_ms);
+// Full, half or quarter size: the largest whose pictures keep up with `interval_ms`, told from how long those
+// of full and of half size take.
+int playDivisor(double full_ms, double half_ms, double interval_ms);
 
 }  // namespace beam

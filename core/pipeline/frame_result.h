@@ -17,6 +17,8 @@ inline constexpr const char* kCloudFile = "cloud.ply";
 inline constexpr const char* kMeshFile = "mesh.ply";
 inline constexpr const char* kMaterialsFile = "materials.ply";
 inline constexpr const char* kEnvironmentFile = "environment.exr";
+inline constexpr const char* kJointsFile =
+    "joints.ply";                                   // Gaussians, in the same order in all frames of a take
 inline constexpr const char* kMapsFolder = "maps";  // <camera>.<map>.exr
 
 struct FrameResult {

@@ -9,8 +9,10 @@
 #include <QMouseEvent>
 
 #include <atomic>
+#include <cmath>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "core/io/splat_ply.h"
 #include "tests/support/splat_shapes.h"
@@ -18,6 +20,7 @@
 #include "ui/main_window.h"
 #include "ui/timeline_panel.h"
 #include "viewers/gl/functions.h"
+#include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
 
 namespace beam {
@@ -94,6 +97,13 @@ class BallStage final : public StageOf<BallOptions> {
     GaussianCloud cloud;
     testing::addSphere(cloud, vec3(0.1f * static_cast<float>(c.frame.value), 1, 0), 0.3f, options_.size);
     c.scores["gaussians"] = static_cast<double>(cloud.size()) + c.frame.value;
+    if (info_.id == "track") {  // a joint at either side of the ball
+      GaussianCloud joints;
+      for (const float side : {-0.3f, 0.3f})
+        testing::addSplat(joints, vec3(0.1f * static_cast<float>(c.frame.value) + side, 1, 0), vec3(0, 0, 1),
+                          0.1f, 0.01f);
+      return writeSplatPly(c.folder / kJointsFile, joints, nullptr);
+    }
     if (info_.id == "surface") return writeSplatPly(c.folder / kCloudFile, cloud, nullptr);
     Materials m;
     m.roughness.assign(cloud.size(), 0.5f);
@@ -129,9 +139,10 @@ ImportedCapture take(const fs::path&, const ImportOptions&) {
 
 class Timeline : public ::testing::Test {
  protected:
-  Timeline() : window(services(), MainWindow::Layout::Fresh) {
+  explicit Timeline(bool solved = false) : window(services(), MainWindow::Layout::Fresh) {
     g_held_frame = -1;
-    fs::create_directory(folder / "capture");
+    if (solved) fs::copy(solvedTake(), folder.path(), fs::copy_options::recursive);
+    fs::create_directories(folder / "capture");
     window.show();
     window.open(folder / "capture");
     EXPECT_TRUE(waitFor([&] { return window.model().isOpen() && window.settled(); }));
@@ -152,10 +163,29 @@ class Timeline : public ::testing::Test {
       return std::make_unique<BallStage>(StageInfo{
           "materials", "Materials", "", {{.id = "fit", .title = "Fit", .inputs = {"surface.refine"}}}});
     });
+    setup->stages.add([] {
+      return std::make_unique<BallStage>(StageInfo{
+          "track", "Track", "", {{.id = "joints", .title = "Joints", .inputs = {"surface.refine"}}}});
+    });
     setup->open_capture = take;
     const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
     return {
         .pipeline = setup, .job_device = device, .view_device = device, .make_sample = {}, .version = "test"};
+  }
+  // A folder with the capture and its finished project, made once.
+  static fs::path solvedTake() {
+    static const TempDir folder;
+    static bool made = false;
+    if (std::exchange(made, true)) return folder.path();
+    fs::create_directories(folder / "capture");
+    const StudioServices with = services();
+    Project project = Project::create(folder / "capture.beam", {}, with.pipeline);
+    project.setCapture(folder / "capture");
+    project.save();
+    Runner runner;
+    runner.start(project, {}, with.job_device);
+    while (runner.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return folder.path();
   }
   void runToTheEnd(RunScope scope, const std::string& until = {}) {
     window.run(until, scope);
@@ -169,6 +199,11 @@ class Timeline : public ::testing::Test {
 
   TempDir folder;
   MainWindow window;
+};
+
+class SolvedTimeline : public Timeline {
+ protected:
+  SolvedTimeline() : Timeline(true) {}
 };
 
 TEST_F(Timeline, GoesToTheFrameThatIsPressedAndDraggedTo) {
@@ -216,16 +251,14 @@ TEST_F(Timeline, RunsTheRangeAloneAndHoldsTheNearestSolvedFrame) {
   EXPECT_FALSE(window.model().held());
 }
 
-TEST_F(Timeline, OffersTheScoresOfTheTakeAsCurves) {
-  EXPECT_FALSE(window.timeline().chooseCurve("materials.fit.gaussians"));
-  runToTheEnd(RunScope::Take);
+TEST_F(SolvedTimeline, OffersTheScoresOfTheTakeAsCurves) {
+  EXPECT_FALSE(window.timeline().chooseCurve("materials.fit.beauty"));
   ASSERT_TRUE(window.timeline().chooseCurve("materials.fit.gaussians"));
   const SurveyCurve* curve = window.model().survey()->curve("materials.fit.gaussians");
   EXPECT_EQ(curve->values[3] - curve->values[0], 3);
 }
 
-TEST_F(Timeline, PlaysInTheRangeFromMemoryAndSaysTheRate) {
-  runToTheEnd(RunScope::Take);
+TEST_F(SolvedTimeline, PlaysInTheRangeFromMemoryAndSaysTheRate) {
   window.player().setIn(1);
   window.player().setOut(4);
   std::set<int> seen;
@@ -245,8 +278,7 @@ TEST_F(Timeline, PlaysInTheRangeFromMemoryAndSaysTheRate) {
   EXPECT_EQ(std::count(held.begin() + 1, held.begin() + 5, true), 4);
 }
 
-TEST_F(Timeline, StopsAtTheOutPointWithoutALoop) {
-  runToTheEnd(RunScope::Take);
+TEST_F(SolvedTimeline, StopsAtTheOutPointWithoutALoop) {
   window.player().setLoop(false);
   window.player().goTo(3);
   window.player().play();
@@ -278,6 +310,42 @@ TEST_F(Timeline, ShowsANewResultOfTheShownFrame) {
   EXPECT_FALSE(window.model().values().materials);
   runToTheEnd(RunScope::Frame);
   EXPECT_TRUE(waitFor([&] { return window.model().values().materials != nullptr; }));
+}
+
+TEST(Influence, IsTheWeightOfTheJointAmongTheAnchors) {
+  const Anchors anchors{2, {0, 1, 2, 0}, {0.75f, 0.25f, 0.5f, 0.5f}};
+  EXPECT_EQ(influenceOf(anchors, 0), (std::vector<float>{0.75f, 0.5f}));
+  EXPECT_EQ(influenceOf(anchors, 1), (std::vector<float>{0.25f, 0.0f}));
+  EXPECT_EQ(influenceOf(anchors, 7), (std::vector<float>{0.0f, 0.0f}));
+}
+
+TEST_F(Timeline, SaysHowToGetJointsWhereThereAreNone) {
+  runToTheEnd(RunScope::Frame, "surface");
+  window.showView(StudioView::Scene);
+  ASSERT_TRUE(waitFor([&] { return window.settled() && !window.joints().shown().hint.isEmpty(); }));
+  EXPECT_TRUE(window.joints().shown().hint.contains("run until Track"));
+  EXPECT_TRUE(window.joints().shown().trails.empty());
+}
+
+TEST_F(SolvedTimeline, ShowsJointsWithTheirTrailsAndTheInfluenceOfThePickedOne) {
+  window.showView(StudioView::Scene);
+  window.player().goTo(3);
+  ASSERT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().trails.size() == 4; }));
+  EXPECT_NEAR(window.joints().shown().trails[0][1].x, 0.3f, 1e-6);
+  EXPECT_NEAR(window.joints().shown().trails[3][1].x, 0.6f, 1e-6);
+  EXPECT_FALSE(window.joints().shown().influence);
+  Q_EMIT window.sceneView().jointPicked(1);
+  ASSERT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().influence != nullptr; }));
+  const std::vector<float>& shares = *window.joints().shown().influence;
+  const std::vector<vec3>& skin = window.model().values().cloud->position_m;
+  ASSERT_EQ(shares.size(), skin.size());
+  for (std::size_t i = 0; i < skin.size(); ++i) {
+    const float side = skin[i].x - 0.3f;  // of the ball's middle
+    if (std::abs(side) < 0.05f) continue;
+    EXPECT_NEAR(shares[i], side > 0 ? 1 : 0, 0.01) << side;
+  }
+  window.joints().pick(-1);
+  EXPECT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().influence == nullptr; }));
 }
 
 }  // namespace

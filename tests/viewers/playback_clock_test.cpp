@@ -125,11 +125,11 @@ TEST(PlaybackClock, FollowsARangeThatChangesWhilePlaying) {
 }
 
 TEST(PlayDivisor, IsTheLargestPictureThatKeepsUp) {
-  EXPECT_EQ(playDivisor(20, 33.3), 1);
-  EXPECT_EQ(playDivisor(33, 33.3), 2) << "no time would be left to show it";
-  EXPECT_EQ(playDivisor(100, 33.3), 2);
-  EXPECT_EQ(playDivisor(400, 33.3), 4);
-  EXPECT_EQ(playDivisor(9000, 33.3), 4) << "and no smaller";
+  EXPECT_EQ(playDivisor(20, 8, 33.3), 1);
+  EXPECT_EQ(playDivisor(33, 12, 33.3), 2) << "no time would be left to show it";
+  EXPECT_EQ(playDivisor(100, 25, 33.3), 2);
+  EXPECT_EQ(playDivisor(100, 32, 33.3), 4);
+  EXPECT_EQ(playDivisor(9000, 2000, 33.3), 4) << "and no smaller";
 }
 
 }  // namespace

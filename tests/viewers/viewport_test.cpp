@@ -6,6 +6,7 @@
 #include <QDeadlineTimer>
 #include <QKeyEvent>
 #include <QMouseEvent>
+#include <QOpenGLWidget>
 
 #include "tests/support/splat_shapes.h"
 #include "viewers/image/image_view.h"
@@ -249,6 +250,59 @@ TEST(SceneViewport, ShowsEllipsoidsCamerasAndMesh) {
   EXPECT_FALSE(view.layerShown(SceneLayer::Mesh)) << "the mesh would hide the ellipsoids";
   view.setLayerShown(SceneLayer::Mesh, true);
   EXPECT_NE(view.grab().toImage(), without);
+}
+
+TEST(SceneViewport, ShowsJointsOverTheSkinAndFindsTheOneUnderTheHand) {
+  SceneView view;
+  view.resize(400, 400);
+  view.show();
+  view.setCloud(threeBalls());
+  view.goHome();  // looks at (0, 0.9, 0)
+  ASSERT_TRUE(waitFor([&] { return view.settled(); }));
+  const QImage without = view.grab().toImage();
+  view.setJoints({{vec3(0, 0.5f, 0), vec3(1, 0.9f, 0)}, {vec3(0, 0.9f, 0), vec3(1, 0.9f, 0)}}, {});
+  ASSERT_TRUE(waitFor([&] { return view.settled(); }));
+  EXPECT_NE(view.grab().toImage(), without);
+  const QWidget* picture = view.findChild<QOpenGLWidget*>();
+  ASSERT_NE(picture, nullptr);
+  const QPointF middle = picture->geometry().center();
+  EXPECT_EQ(view.jointAt(middle), 0);
+  EXPECT_EQ(view.jointAt(middle + QPointF(0, 60)), -1) << "the trail is not the joint";
+  int picked = 7;
+  QObject::connect(&view, &SceneView::jointPicked, &view, [&](int joint) { picked = joint; });
+  const auto press = [&](QPointF from, QPointF to) {
+    auto* target = view.findChild<QOpenGLWidget*>();
+    const QPointF offset = picture->geometry().topLeft();
+    QMouseEvent down(QEvent::MouseButtonPress, from - offset, Qt::LeftButton, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(target, &down);
+    QMouseEvent up(QEvent::MouseButtonRelease, to - offset, Qt::LeftButton, Qt::NoButton, Qt::NoModifier);
+    QApplication::sendEvent(target, &up);
+  };
+  press(middle, middle + QPointF(40, 0));
+  EXPECT_EQ(picked, 7) << "a drag turns the camera";
+  view.goHome();
+  press(middle, middle);
+  EXPECT_EQ(picked, 0);
+  view.setLayerShown(SceneLayer::Joints, false);
+  EXPECT_EQ(view.jointAt(middle), -1) << "what is hidden cannot be picked";
+}
+
+TEST(SceneViewport, ColoursTheSkinByTheInfluenceOfAJoint) {
+  SceneView view;
+  view.resize(400, 400);
+  view.show();
+  const auto cloud = threeBalls();
+  view.setCloud(cloud);
+  view.setInfluence(0, std::make_shared<const std::vector<float>>(cloud->size() - 1, 1.0f));
+  ASSERT_TRUE(waitFor([&] { return view.settled(); }));
+  const QImage own = view.grab().toImage();
+  view.setInfluence(0, std::make_shared<const std::vector<float>>(cloud->size(), 1.0f));
+  ASSERT_TRUE(waitFor([&] { return view.settled(); }));
+  const QImage shares = view.grab().toImage();
+  EXPECT_NE(shares, own);
+  view.setInfluence(-1, nullptr);
+  ASSERT_TRUE(waitFor([&] { return view.settled(); }));
+  EXPECT_EQ(view.grab().toImage(), own) << "shares of another cloud are not shown";
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QMouseEvent>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -24,6 +25,7 @@
 #include <deque>
 #include <functional>
 
+#include "core/base/error.h"
 #include "viewers/latest_worker.h"
 #include "viewers/orbit_camera.h"
 #include "viewers/scene/vtk_convert.h"
@@ -36,8 +38,8 @@ constexpr std::size_t kMostEllipsoids = 6000;
 constexpr float kEllipsoidSigmas = 2;
 constexpr float kGridExtent_m = 2, kGridCell_m = 0.25f;
 
-const std::array<const char*, kSceneLayerCount> kTitles{"Cameras", "Seed points", "Gaussians", "Mesh",
-                                                        "Grid and axes"};
+const std::array<const char*, kSceneLayerCount> kTitles{"Cameras", "Seed points",   "Gaussians",
+                                                        "Mesh",    "Grid and axes", "Joints"};
 
 template <class T>
 vtkSmartPointer<T> make() {
@@ -55,11 +57,18 @@ struct SceneView::State {
   std::array<QToolButton*, kSceneLayerCount> toggles{};
   vtkSmartPointer<vtkGenericOpenGLRenderWindow> window = make<vtkGenericOpenGLRenderWindow>();
   vtkSmartPointer<vtkRenderer> renderer = make<vtkRenderer>();
+  vtkSmartPointer<vtkRenderer> overlay = make<vtkRenderer>();  // joints lie under the skin, and are seen
   std::array<vtkSmartPointer<vtkActor>, kSceneLayerCount> actors;
   std::array<vtkSmartPointer<vtkBillboardTextActor3D>, 3> axis_names;
   std::array<QString, kSceneLayerCount> counts;
   Bounds bounds{vec3(0, 0.9f, 0), 2.5f};
   bool framed = false;
+  std::shared_ptr<const GaussianCloud> cloud;
+  std::shared_ptr<const std::vector<float>> influence;
+  JointTrails trails;
+  QString joint_hint;
+  int picked_joint = -1;
+  QPointF pressed_at;
   // A layer that is replaced while it is built never arrives; the newest always does.
   std::array<int, kSceneLayerCount> tickets{}, arrived{};
   std::array<LatestWorker, kSceneLayerCount> workers;  // last: they stop first
@@ -68,6 +77,8 @@ struct SceneView::State {
   void layOut();
   void show(SceneLayer layer, const PolyData& data, const QString& count);
   void build(SceneLayer layer, std::function<PolyData()> make_data, const QString& count);
+  void buildCloud();
+  void buildJoints();
   void updateFacts();
   void render() const { window->Render(); }
 };
@@ -78,13 +89,16 @@ void SceneView::State::addActors() {
     auto mapper = make<vtkPolyDataMapper>();
     mapper->SetInputData(make<vtkPolyData>());
     actor->SetMapper(mapper);
-    renderer->AddActor(actor);
+    (&actor == &actors[static_cast<int>(SceneLayer::Joints)] ? overlay : renderer)->AddActor(actor);
   }
   const auto property = [&](SceneLayer layer) { return actors[static_cast<int>(layer)]->GetProperty(); };
-  for (const SceneLayer flat : {SceneLayer::Cameras, SceneLayer::SeedPoints, SceneLayer::Grid})
+  for (const SceneLayer flat :
+       {SceneLayer::Cameras, SceneLayer::SeedPoints, SceneLayer::Grid, SceneLayer::Joints})
     property(flat)->LightingOff();
   property(SceneLayer::Cameras)->SetLineWidth(1.4f);
   property(SceneLayer::SeedPoints)->SetPointSize(3);
+  property(SceneLayer::Joints)->SetPointSize(7);
+  property(SceneLayer::Joints)->SetLineWidth(1.6f);
   for (const SceneLayer solid : {SceneLayer::Gaussians, SceneLayer::Mesh}) {
     property(solid)->SetAmbient(0.35);
     property(solid)->SetDiffuse(0.65);
@@ -139,6 +153,7 @@ void SceneView::State::updateFacts() {
   for (const QString& count : counts) {
     if (!count.isEmpty()) words << count;
   }
+  if (!joint_hint.isEmpty()) words << joint_hint;
   facts->setText(words.join(" · "));
 }
 
@@ -172,7 +187,13 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), state_(std::make_unique
   State& s = *state_;
   s.layOut();
   s.addActors();
+  s.window->SetNumberOfLayers(2);
   s.window->AddRenderer(s.renderer);
+  s.overlay->SetLayer(1);
+  s.overlay->InteractiveOff();
+  s.overlay->SetActiveCamera(s.renderer->GetActiveCamera());
+  s.window->AddRenderer(s.overlay);
+  s.vtk->installEventFilter(this);
   s.window->SetMultiSamples(0);
   s.renderer->SetBackground(0.106, 0.110, 0.118);
   s.vtk->interactor()->SetInteractorStyle(make<vtkInteractorStyleTerrain>());
@@ -208,17 +229,93 @@ void SceneView::setCapture(std::shared_ptr<const CaptureSet> capture) {
   goHome();
 }
 
-void SceneView::setCloud(std::shared_ptr<const GaussianCloud> cloud) {
-  State& s = *state_;
+void SceneView::State::buildCloud() {
   if (!cloud || cloud->size() == 0) {
-    s.build(SceneLayer::Gaussians, {}, {});
+    build(SceneLayer::Gaussians, {}, {});
     return;
   }
   const QString count =
       QString("%L1 of %L2 Gaussians").arg(std::min(cloud->size(), kMostEllipsoids)).arg(cloud->size());
-  s.build(
-      SceneLayer::Gaussians, [cloud] { return ellipsoidsOf(*cloud, kMostEllipsoids, kEllipsoidSigmas); },
+  const bool fits = influence && influence->size() == cloud->size();
+  build(
+      SceneLayer::Gaussians,
+      [shown = cloud, shares = fits ? influence : std::make_shared<const std::vector<float>>()] {
+        return ellipsoidsOf(*shown, kMostEllipsoids, kEllipsoidSigmas, *shares);
+      },
       count);
+}
+
+void SceneView::State::buildJoints() {
+  if (trails.empty()) {
+    build(SceneLayer::Joints, {}, {});
+    return;
+  }
+  QString words = QString("%L1 joints").arg(trails.back().size());
+  if (trails.size() > 1) words += QString(" with trails of %1 frames").arg(trails.size());
+  words += picked_joint < 0
+               ? QString(", press one to see its influence")
+               : QString(", influence of joint %1 from indigo (little) to yellow (all)").arg(picked_joint);
+  build(
+      SceneLayer::Joints, [shown = trails, joint = picked_joint] { return jointsOf(shown, joint); }, words);
+}
+
+void SceneView::setCloud(std::shared_ptr<const GaussianCloud> cloud) {
+  state_->cloud = std::move(cloud);
+  state_->buildCloud();
+}
+
+void SceneView::setJoints(const std::vector<std::vector<vec3>>& trails, const QString& hint) {
+  for (const auto& moment : trails) {
+    if (moment.size() != trails.back().size())
+      throw Error(Error::Kind::Bug, "joints of a trail differ in number");
+  }
+  state_->trails = trails;
+  state_->joint_hint = hint;
+  state_->buildJoints();
+  state_->updateFacts();
+}
+
+void SceneView::setInfluence(int joint, std::shared_ptr<const std::vector<float>> shares) {
+  const bool other = shares != state_->influence;
+  state_->picked_joint = joint;
+  state_->influence = std::move(shares);
+  if (other) state_->buildCloud();
+  state_->buildJoints();
+}
+
+int SceneView::jointAt(QPointF position) const {
+  constexpr double kReach_px = 12;
+  if (state_->trails.empty() || !layerShown(SceneLayer::Joints)) return -1;
+  const QPointF at = state_->vtk->mapFrom(this, position.toPoint());
+  const double ratio = devicePixelRatioF();
+  const dvec2 wanted(at.x() * ratio, (state_->vtk->height() - at.y()) * ratio);
+  double nearest = kReach_px * ratio;
+  int found = -1;
+  const std::vector<vec3>& joints = state_->trails.back();
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    state_->overlay->SetWorldPoint(joints[j].x, joints[j].y, joints[j].z, 1);
+    state_->overlay->WorldToDisplay();
+    const double* display = state_->overlay->GetDisplayPoint();
+    const double away = glm::distance(dvec2(display[0], display[1]), wanted);
+    if (away >= nearest) continue;
+    nearest = away;
+    found = static_cast<int>(j);
+  }
+  return found;
+}
+
+// A press that does not become a drag picks; everything goes on to the camera.
+bool SceneView::eventFilter(QObject* watched, QEvent* event) {
+  constexpr double kStill_px = 4;
+  if (event->type() == QEvent::MouseButtonPress) {
+    state_->pressed_at = static_cast<QMouseEvent*>(event)->localPos();
+  } else if (event->type() == QEvent::MouseButtonRelease && !state_->trails.empty()) {
+    const auto* mouse = static_cast<QMouseEvent*>(event);
+    const QPointF moved = mouse->localPos() - state_->pressed_at;
+    if (mouse->button() == Qt::LeftButton && moved.manhattanLength() < kStill_px)
+      Q_EMIT jointPicked(jointAt(state_->vtk->mapTo(this, mouse->localPos().toPoint())));
+  }
+  return QWidget::eventFilter(watched, event);
 }
 
 void SceneView::setMesh(std::shared_ptr<const Mesh> mesh) {
@@ -274,6 +371,9 @@ bool SceneView::handleKey(const QKeyEvent& event) {
       return true;
     case Qt::Key_G:
       setLayerShown(SceneLayer::Grid, !layerShown(SceneLayer::Grid));
+      return true;
+    case Qt::Key_J:
+      setLayerShown(SceneLayer::Joints, !layerShown(SceneLayer::Joints));
       return true;
     default:
       return false;

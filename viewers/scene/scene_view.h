@@ -14,8 +14,8 @@ class QKeyEvent;
 
 namespace beam {
 
-enum class SceneLayer { Cameras, SeedPoints, Gaussians, Mesh, Grid };
-inline constexpr int kSceneLayerCount = 5;
+enum class SceneLayer { Cameras, SeedPoints, Gaussians, Mesh, Grid, Joints };
+inline constexpr int kSceneLayerCount = 6;
 
 class SceneView final : public QWidget {
   Q_OBJECT
@@ -29,12 +29,27 @@ class SceneView final : public QWidget {
   void setCloud(std::shared_ptr<const GaussianCloud> cloud);
   void setMesh(std::shared_ptr<const Mesh> mesh);
 
+  // By moment, oldest first, the same joints in each; empty: none, and `hint` says why. An earlier moment
+  // with another number of joints is refused (Error{Bug}).
+  void setJoints(const std::vector<std::vector<vec3>>& trails, const QString& hint);
+  // The share of a joint in each Gaussian of the cloud, in false colours; -1 and empty: own colours. Shares
+  // of another number than the cloud has Gaussians wait for a cloud that fits.
+  void setInfluence(int joint, std::shared_ptr<const std::vector<float>> shares);
+  // The joint nearest to a point of this widget, within a finger's breadth; -1: none.
+  int jointAt(QPointF position) const;
+
   void setLayerShown(SceneLayer layer, bool shown);
   bool layerShown(SceneLayer layer) const;
   void goHome();
 
   bool handleKey(const QKeyEvent& event);
   bool settled() const;
+
+ Q_SIGNALS:
+  void jointPicked(int joint);  // -1: pressed where none is
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
   struct State;

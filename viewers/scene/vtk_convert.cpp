@@ -9,8 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
+
+#include "viewers/false_color.h"
 
 namespace beam {
 namespace {
@@ -103,6 +106,19 @@ u8vec3 meanColor(const GaussianCloud& cloud, std::size_t i) {
   return u8vec3(glm::clamp(c, vec3(0), vec3(1)) * 255.0f + 0.5f);
 }
 
+// Grey where the joint has no say.
+u8vec3 influenceColor(float share) {
+  constexpr float kLeast = 0.005f;
+  return share < kLeast ? u8vec3(70, 74, 80) : falseColor(share);
+}
+
+// Neighbours in the list get colours far apart: steps of the golden angle around the colour circle.
+vec3 jointColor(std::size_t joint) {
+  constexpr float kGoldenTurn = 0.618034f;
+  const float turn = 2 * kPi * std::fmod(kGoldenTurn * static_cast<float>(joint), 1.0f);
+  return 0.55f + 0.4f * vec3(std::cos(turn), std::cos(turn - 2 * kPi / 3), std::cos(turn + 2 * kPi / 3));
+}
+
 }  // namespace
 
 PolyData frustaOf(const std::vector<View>& views, double length_m) {
@@ -152,11 +168,12 @@ PolyData meshOf(const Mesh& mesh) {
   return builder.build();
 }
 
-PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas) {
+PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas,
+                      const std::vector<float>& influence) {
   const Mesh sphere = unitSphere();
   Builder builder;
   for (const std::size_t i : largest(cloud, most)) {
-    const u8vec3 color = meanColor(cloud, i);
+    const u8vec3 color = influence.empty() ? meanColor(cloud, i) : influenceColor(influence[i]);
     const vec3 radii = sigmas * cloud.scale_m[i];
     vtkIdType first = -1;
     for (const vec3& v : sphere.vertices) {
@@ -165,6 +182,23 @@ PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas
       builder.normal(glm::normalize(cloud.rotation[i] * (v / radii)));
     }
     for (const auto& [a, b, c] : sphere.triangles) builder.triangle(first + a, first + b, first + c);
+  }
+  return builder.build();
+}
+
+PolyData jointsOf(const JointTrails& trails, int picked) {
+  Builder builder;
+  if (trails.empty()) return builder.build();
+  for (std::size_t j = 0; j < trails.back().size(); ++j) {
+    const vec3 color = static_cast<int>(j) == picked ? vec3(1) : jointColor(j);
+    vtkIdType before = -1;
+    for (std::size_t t = 0; t < trails.size(); ++t) {
+      const float age = static_cast<float>(t + 1) / static_cast<float>(trails.size());
+      const vtkIdType here = builder.point(trails[t][j], u8vec3(255.0f * color * (0.25f + 0.75f * age)));
+      if (before >= 0) builder.line(before, here);
+      before = here;
+    }
+    builder.vertex(before);
   }
   return builder.build();
 }

@@ -21,7 +21,14 @@ PolyData pointsOf(const PointCloud& cloud);
 PolyData meshOf(const Mesh& mesh);
 
 // The largest `most` Gaussians (by opacity and cross-section) as ellipsoids of `sigmas` standard deviations.
-PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas);
+// `influence`: shares in [0, 1] in false colours instead of their own; empty: none.
+PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas,
+                      const std::vector<float>& influence = {});
+
+// Where the joints were: by moment, oldest first, in the same order; the last is shown.
+using JointTrails = std::vector<std::vector<vec3>>;
+// The joints as points and their ways as lines that fade into the past; `picked` is white, -1: none.
+PolyData jointsOf(const JointTrails& trails, int picked);
 
 // A floor of `cell_m` cells at y = 0 and the three axes, x red, y green, z blue.
 PolyData gridAndAxes(float extent_m, float cell_m);

@@ -15,6 +15,7 @@ namespace {
 constexpr int kRest_ms = 160;            // without movement before the full picture
 constexpr double kMovingBudget_ms = 45;  // a coarse picture should take no longer
 constexpr int kCoarsest = 4;
+constexpr double kNewest = 0.3;  // weight of the newest time in their mean
 
 SharedPicture pictureOf(const Image<u8vec3>& photo) {
   auto picture = std::make_shared<Image<u8vec4>>(photo.width, photo.height);
@@ -73,6 +74,7 @@ void SplatView::setScene(const SplatScene& scene, const QString& caption) {
 void SplatView::setPassing(int divisor) {
   const bool rests = passing_ > 0 && divisor == 0;
   passing_ = divisor;
+  if (passing_ == 0) half_milliseconds_ = 0;
   if (rests) changed(Pace::Resting);
 }
 
@@ -217,7 +219,8 @@ void SplatView::take(SplatPicture picture, int divisor, std::uint64_t ticket) {
   shown_ = std::move(picture);
   shown_ticket_ = ticket;
   shown_divisor_ = divisor;
-  if (shown_.milliseconds > 0) expected_milliseconds_ = shown_.milliseconds * divisor * divisor;
+  if (divisor == 2 && passing_ == 2 && shown_.milliseconds > 0)
+    half_milliseconds_ = std::lerp(halfPictureMilliseconds(), shown_.milliseconds, kNewest);
   if (divisor == 1 && shown_.milliseconds > 0) full_milliseconds_ = shown_.milliseconds;
   setPicture(0, shown_.pixels.empty() ? nullptr : std::make_shared<Image<u8vec4>>(std::move(shown_.pixels)));
   Q_EMIT pictureShown();

@@ -45,8 +45,10 @@ class SplatView final : public PictureCanvas {
   bool upToDate() const { return !scene_.cloud || shown_ticket_ == newest_ticket_; }
   // Frames pass by: every scene is drawn once, at the width and height divided by this; 0: they do not.
   void setPassing(int divisor);
-  // What a full-size picture takes, told from the last one of any size.
-  double expectedMilliseconds() const { return expected_milliseconds_; }
+  // What a picture of half size takes while frames pass by: measured, before that told from the full one.
+  double halfPictureMilliseconds() const {
+    return half_milliseconds_ > 0 ? half_milliseconds_ : full_milliseconds_ / 4;
+  }
   double fullPictureMilliseconds() const { return full_milliseconds_; }  // the last one took
 
  Q_SIGNALS:
@@ -95,7 +97,8 @@ class SplatView final : public PictureCanvas {
   SplatPicture shown_;
   int shown_divisor_ = 0;
   std::uint64_t newest_ticket_ = 0, shown_ticket_ = 0;
-  double full_milliseconds_ = 200, expected_milliseconds_ = 200;  // of the last full picture; of the next
+  double full_milliseconds_ = 200;  // of the last full picture
+  double half_milliseconds_ = 0;    // lately; 0: none yet since frames pass by
   int passing_ = 0;
   std::optional<ViewIndex> photo_of_;
   QString photo_note_;

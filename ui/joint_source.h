@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joints of the shown frame with their way over the last frames, and the influence of one on the skin; read
+// on a background thread from what the Track stage left.
+#pragma once
+
+#include <QObject>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "core/optim/anchors.h"
+#include "ui/project_model.h"
+
+namespace beam {
+
+using JointPositions = std::vector<vec3>;
+
+// Anchors of the skin as they were bound; shares of `joint` in every skin Gaussian, 0 where it is none of its
+// anchors.
+std::vector<float> influenceOf(const Anchors& anchors, std::uint32_t joint);
+
+struct JointsShown {
+  std::vector<JointPositions> trails;                   // oldest first, the last is the frame's; empty: none
+  QString hint;                                         // why there are none
+  std::shared_ptr<const std::vector<float>> influence;  // of the picked joint; null: none
+};
+
+class JointSource final : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit JointSource(const ProjectModel& model, QObject* parent = nullptr);
+
+  // For the model's frame; answers with changed().
+  void refresh();
+  void pick(int joint);  // -1: none
+  int picked() const { return picked_; }
+  const JointsShown& shown() const { return shown_; }
+  bool settled() const { return seen_ == ticket_; }
+
+ Q_SIGNALS:
+  void changed();
+
+ private:
+  // What the worker keeps between answers.
+  struct Memory {
+    std::map<std::int32_t, std::pair<Digest, JointPositions>> joints;  // by frame, with the survey's stamp
+    Digest bound_stamp;                                                // of the rest frame of `bound`
+    std::shared_ptr<const Anchors> bound;
+  };
+  struct Wish;
+  static JointsShown answer(const Wish& wish, Memory& memory);
+
+  const ProjectModel& model_;
+  int picked_ = -1;
+  JointsShown shown_;
+  std::uint64_t ticket_ = 0, seen_ = 0;
+  std::shared_ptr<Memory> memory_ = std::make_shared<Memory>();  // used by worker_ alone
+  LatestWorker worker_;                                          // last: it stops first
+};
+
+}  // namespace beam
