@@ -264,7 +264,7 @@ void MainWindow::showFinished(const JobFinished& outcome) {
   QStringList notes;
   for (const std::string& note : outcome.notes) notes << QString::fromStdString(note);
   if (!notes.isEmpty()) message_->show(MessagePanel::Kind::Notice, "Left out", notes.join("\n"));
-  model_.refresh();
+  model_.refresh(true);
   project_panel_->refreshScores();
 }
 

@@ -65,6 +65,7 @@ std::vector<StageStatus> statusOf(const TakeSurvey& survey, const std::vector<St
     const auto f = static_cast<std::size_t>(shown.value);
     if (f < lane.cells.size()) {
       status.state = stateOf(lane.cells[f]);
+      status.stale = lane.cells[f] == CellState::Stale;
       if (!lane.notes[f].empty()) status.detail = QString::fromStdString(lane.notes[f]);
     }
     all.push_back(std::move(status));
@@ -93,6 +94,7 @@ struct ProjectModel::Opened {
 
 struct ProjectModel::Surveyed {
   std::uint64_t ticket = 0;
+  bool pictures = false;
   std::shared_ptr<const Project> project;
   std::shared_ptr<const TakeSurvey> survey;  // null: `error` tells why
   QString error;
@@ -245,13 +247,16 @@ void ProjectModel::saveQuietly() {
   if (project_ && unsaved_) save();
 }
 
-void ProjectModel::refresh() {
+void ProjectModel::refresh(bool pictures) {
   if (!project_) return;
+  pictures_due_ = pictures_due_ || pictures;
   const std::uint64_t ticket = ++states_ticket_;
-  states_worker_.submit([this, project = *project_, surveyor = surveyor_, ticket] {
+  states_worker_.submit([this, project = *project_, surveyor = surveyor_, ticket, look = pictures_due_] {
     auto result = std::make_shared<Surveyed>();
     result->ticket = ticket;
+    result->pictures = look;
     try {
+      if (look) surveyor->forgetKeys();
       result->survey = std::make_shared<const TakeSurvey>(surveyor->survey(project));
       result->project = std::make_shared<const Project>(project);
     } catch (const std::exception& e) {  // the border of this thread: said in the window
@@ -265,6 +270,7 @@ void ProjectModel::refresh() {
 void ProjectModel::take(const std::shared_ptr<Surveyed>& result) {
   if (result->ticket != states_ticket_) return;
   states_seen_ = result->ticket;
+  if (result->pictures) pictures_due_ = false;
   if (!result->survey) {
     ready_ = true;
     Q_EMIT failed("The state of the project cannot be read", result->error);

@@ -20,6 +20,7 @@ struct StageStatus {
   QString title, summary;
   StepState state = StepState::Pending;  // of the current frame
   int done = 0, frames = 0;              // frames that are done
+  bool stale = false;                    // to do, and there is a result of other settings
   QString detail;                        // why it is blocked or failed
 };
 
@@ -60,7 +61,8 @@ class ProjectModel final : public QObject {
   bool unsaved() const { return unsaved_; }
 
   // Looks at the disk again: states of the whole take, then the frame's values where they changed.
-  void refresh();
+  // `pictures`: also whether the capture's pictures are still the same, which takes longer.
+  void refresh(bool pictures = false);
   const std::vector<StageStatus>& stages() const { return stages_; }
   std::shared_ptr<const TakeSurvey> survey() const { return survey_; }  // null: not there yet
   const FrameValues& values() const { return values_; }
@@ -112,6 +114,7 @@ class ProjectModel final : public QObject {
   std::vector<FrameIndex> prefetch_;
   QString told_error_;
   bool opening_ = false, unsaved_ = false, ready_ = false, passing_ = false;
+  bool pictures_due_ = false;  // a refresh of the pictures was asked for and has not answered
   // A refresh that a newer one overtakes never answers; the newest always does.
   std::uint64_t states_ticket_ = 0, states_seen_ = 0, mesh_ticket_ = 0, mesh_seen_ = 0;
   QTimer autosave_;

@@ -70,6 +70,7 @@ QString StageRail::stateText(const StageStatus& stage) const {
     case StepState::Blocked:
       return "needs a panorama";
     case StepState::Pending:
+      if (stage.stale) return "stale" + share;
       return stage.done > 0 ? "not here," + share : QString("to do");
   }
   return {};

@@ -120,8 +120,9 @@ void Errand::tick() {
     return;
   }
   const bool runs = run_started_ && window_.job().busy();
+  const bool to_play = arguments_.play_s > 0 && !(window_.model().settled() && window_.lights().settled());
   const bool busy =
-      (runs && arguments_.wait_run) || (!runs && !window_.settled()) || window_.model().opening();
+      (runs && arguments_.wait_run) || (!runs && !window_.settled()) || window_.model().opening() || to_play;
   if (busy) {
     settled_since_.invalidate();
     return;

@@ -116,12 +116,14 @@ class BallStage final : public StageOf<BallOptions> {
   StageInfo info_;
 };
 
+std::atomic<int> g_tint{0};  // added to every picture
+
 // Every frame has a picture of its own.
 class PlainPictures final : public FrameSource {
  public:
   bool has(ViewIndex, FrameIndex) const override { return true; }
   Image<u8vec3> photo(ViewIndex, FrameIndex frame) const override {
-    return Image<u8vec3>(200, 200, u8vec3(static_cast<std::uint8_t>(frame.value)));
+    return Image<u8vec3>(200, 200, u8vec3(static_cast<std::uint8_t>(frame.value + g_tint)));
   }
   Image<std::uint8_t> mask(ViewIndex, FrameIndex) const override { return {}; }
 };
@@ -141,6 +143,7 @@ class Timeline : public ::testing::Test {
  protected:
   explicit Timeline(bool solved = false) : window(services(), MainWindow::Layout::Fresh) {
     g_held_frame = -1;
+    g_tint = 0;
     if (solved) fs::copy(solvedTake(), folder.path(), fs::copy_options::recursive);
     fs::create_directories(folder / "capture");
     window.show();
@@ -238,7 +241,7 @@ TEST_F(Timeline, KeysStepSetThePointsAndStopAtTheEnds) {
 TEST_F(Timeline, RunsTheRangeAloneAndHoldsTheNearestSolvedFrame) {
   window.player().setIn(1);
   window.player().setOut(2);
-  runToTheEnd(RunScope::Range);
+  runToTheEnd(RunScope::Range, "materials");
   for (int f = 0; f < kFrames; ++f) {
     EXPECT_EQ(cell(1, f), f == 1 || f == 2 ? CellState::Done : CellState::Empty) << f;
   }
@@ -290,7 +293,8 @@ TEST_F(SolvedTimeline, StopsAtTheOutPointWithoutALoop) {
 // Frames 0 to 2 are there, 3 is at work: the take plays, and shows what is solved.
 TEST_F(Timeline, PlaysWhileLaterFramesAreStillBeingSolved) {
   g_held_frame = 3;
-  window.run({}, RunScope::Take);
+  window.player().setOut(3);
+  window.run({}, RunScope::Range);
   ASSERT_TRUE(waitFor([&] { return window.model().survey() && cell(1, 2) == CellState::Done; }));
   window.player().setOut(2);
   window.player().play();
@@ -298,7 +302,7 @@ TEST_F(Timeline, PlaysWhileLaterFramesAreStillBeingSolved) {
   EXPECT_TRUE(window.job().busy());
   EXPECT_TRUE(window.model().values().materials);
   g_held_frame = -1;
-  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && cell(1, kFrames - 1) == CellState::Done; }));
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && cell(1, 3) == CellState::Done; }));
   EXPECT_TRUE(window.player().playing()) << "the end of a run does not stop the picture";
   window.player().pause();
   EXPECT_TRUE(waitFor([&] { return window.settled(); }));
@@ -308,8 +312,17 @@ TEST_F(Timeline, ShowsANewResultOfTheShownFrame) {
   runToTheEnd(RunScope::Frame, "surface");
   ASSERT_TRUE(window.model().values().cloud);
   EXPECT_FALSE(window.model().values().materials);
-  runToTheEnd(RunScope::Frame);
+  runToTheEnd(RunScope::Frame, "materials");
   EXPECT_TRUE(waitFor([&] { return window.model().values().materials != nullptr; }));
+}
+
+TEST_F(Timeline, SeesAfterARunThatPicturesOfTheCaptureHaveChanged) {
+  runToTheEnd(RunScope::Frame, "materials");
+  ASSERT_EQ(cell(1, 0), CellState::Done);
+  g_tint = 100;
+  runToTheEnd(RunScope::Frame, "surface");
+  EXPECT_EQ(cell(0, 0), CellState::Done);
+  EXPECT_EQ(cell(1, 0), CellState::Stale) << "made from the old pictures";
 }
 
 TEST(Influence, IsTheWeightOfTheJointAmongTheAnchors) {
