@@ -113,7 +113,7 @@ Meeting deepest(double frame) {
 TEST(SampleMotion, ArmsComeCloseAndDoNotPassThroughTheBody) {
   EXPECT_GT(deepest(0).deepest, 0.05f);  // a good first frame
   float closest = 1;
-  for (int f = 0; f < 60; f += 2) {
+  for (int f = 0; f < 240; f += 5) {
     const Meeting m = deepest(f);
     closest = std::min(closest, m.deepest);
     EXPECT_GT(m.deepest, -0.003f) << m.where << ", frame " << f;
