@@ -84,6 +84,13 @@ std::optional<FrameCache::Found> FrameCache::find(FrameIndex frame) {
   return Found{found->second.values, found->second.error, isCurrent(found->second, frame)};
 }
 
+bool FrameCache::isBlank(FrameIndex frame) const {
+  std::lock_guard lock(mutex_);
+  const auto found = entries_.find(frame.value);
+  return found != entries_.end() && isCurrent(found->second, frame) && !found->second.values.cloud &&
+         found->second.error.empty();
+}
+
 void FrameCache::want(std::vector<FrameIndex> wishes) {
   {
     std::lock_guard lock(mutex_);

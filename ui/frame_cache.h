@@ -51,6 +51,8 @@ class FrameCache {
   };
   // Counts as use.
   std::optional<Found> find(FrameIndex frame);
+  // Read, and there is nothing to see: results of early steps alone.
+  bool isBlank(FrameIndex frame) const;
   // Replaces earlier wishes. The first is read in any case, the others as far as the budget goes.
   void want(std::vector<FrameIndex> wishes);
 

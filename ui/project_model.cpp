@@ -111,12 +111,12 @@ ProjectModel::ProjectModel(StudioServices services, QObject* parent)
     : QObject(parent),
       services_(std::move(services)),
       cache_(services_.frame_memory_bytes > 0 ? services_.frame_memory_bytes : defaultFrameBudget(),
-             [this](FrameIndex frame) {
+             [this](FrameIndex) {
                QMetaObject::invokeMethod(
                    this,
-                   [this, frame] {
+                   [this] {
                      Q_EMIT memoryChanged();
-                     if (!ready_ && project_ && frame == frameWithResults().value_or(frame_)) showFrame();
+                     if (!ready_ && project_) showFrame();
                    },
                    Qt::QueuedConnection);
              }) {
@@ -290,13 +290,14 @@ void ProjectModel::showStages() {
   Q_EMIT stagesChanged();
 }
 
-// The nearest frame that has results, the earlier of two; before the first survey the frame itself.
+// The nearest frame that has something to show, the earlier of two; before the first survey the frame itself.
 std::optional<FrameIndex> ProjectModel::frameWithResults() const {
   if (!survey_) return frame_;
   const int frames = static_cast<int>(survey_->stamps.size());
   for (int away = 0; away < frames; ++away) {
     for (const int f : {frame_.value - away, frame_.value + away}) {
-      if (f >= 0 && f < frames && survey_->stamps[f] != Digest{}) return FrameIndex{f};
+      if (f >= 0 && f < frames && survey_->stamps[f] != Digest{} && !cache_.isBlank(FrameIndex{f}))
+        return FrameIndex{f};
     }
   }
   return std::nullopt;
@@ -312,6 +313,7 @@ void ProjectModel::showFrame() {
     const std::optional<FrameCache::Found> held = cache_.find(*source);
     ready_ = held && held->current;
     if (!ready_) return;
+    if (survey_ && cache_.isBlank(*source)) return showFrame();  // with the next nearest
     found = held->values;
     const QString error = QString::fromStdString(held->error);
     if (!error.isEmpty() && error != told_error_)

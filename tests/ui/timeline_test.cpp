@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/io/file.h"
 #include "core/io/splat_ply.h"
 #include "tests/support/splat_shapes.h"
 #include "tests/support/temp_dir.h"
@@ -89,7 +90,8 @@ class BallStage final : public StageOf<BallOptions> {
  public:
   explicit BallStage(StageInfo info) : info_(std::move(info)) {}
   const StageInfo& info() const override { return info_; }
-  void run(std::string_view, StepContext& c) const override {
+  void run(std::string_view step, StepContext& c) const override {
+    if (step == "seed") return writeFileAtomically(c.folder / "seeds.txt", "nothing to see");
     while (g_held_frame == c.frame.value) {
       c.progress.check();
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -158,7 +160,8 @@ class Timeline : public ::testing::Test {
           StageInfo{"surface",
                     "Surface",
                     "",
-                    {{.id = "fit", .title = "Fit", .reads = pictures},
+                    {{.id = "seed", .title = "Seed", .reads = pictures},
+                     {.id = "fit", .title = "Fit", .inputs = {"surface.seed"}},
                      {.id = "refine", .title = "Refine", .inputs = {"surface.fit"}},
                      {.id = "mesh", .title = "Mesh", .inputs = {"surface.refine"}}}});
     });
@@ -296,6 +299,12 @@ TEST_F(Timeline, PlaysWhileLaterFramesAreStillBeingSolved) {
   window.player().setOut(3);
   window.run({}, RunScope::Range);
   ASSERT_TRUE(waitFor([&] { return window.model().survey() && cell(1, 2) == CellState::Done; }));
+  ASSERT_TRUE(waitFor([&] { return window.model().survey()->stamps[3] != Digest{}; }))
+      << "its seeds are there";
+  window.player().goTo(3);
+  ASSERT_TRUE(waitFor([&] { return window.model().valuesReady(); }));
+  ASSERT_TRUE(window.model().held()) << "seeds are nothing to see";
+  EXPECT_EQ(window.model().held()->from.value, 2);
   window.player().setOut(2);
   window.player().play();
   ASSERT_TRUE(waitFor([&] { return window.player().clock().rate() > 0; }));
