@@ -32,7 +32,7 @@ const char* const kKeys =
     "<tr><td><b>W · T · hold Shift</b></td><td>images: wipe · swap sides · B alone</td></tr>"
     "<tr><td><b>K · G · J</b></td><td>scene: cameras · grid · joints</td></tr>"
     "<tr><td><b>Space · ← · →</b></td><td>play or pause · previous · next frame</td></tr>"
-    "<tr><td><b>I · O · L</b></td><td>in point · out point · loop</td></tr>"
+    "<tr><td><b>I · O · Home · End · L</b></td><td>in point here · out point here · to them · loop</td></tr>"
     "<tr><td><b>Ctrl+Enter · Ctrl+.</b></td><td>run · cancel</td></tr></table>";
 
 }  // namespace

@@ -239,6 +239,10 @@ TEST_F(Timeline, KeysStepSetThePointsAndStopAtTheEnds) {
   key(Qt::Key_Left);
   key(Qt::Key_O);
   EXPECT_EQ(window.player().range(), (FrameRange{2, 4}));
+  key(Qt::Key_Home);
+  EXPECT_EQ(window.model().frame().value, 2);
+  key(Qt::Key_End);
+  EXPECT_EQ(window.model().frame().value, 4);
 }
 
 TEST_F(Timeline, RunsTheRangeAloneAndHoldsTheNearestSolvedFrame) {

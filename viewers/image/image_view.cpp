@@ -270,7 +270,6 @@ bool ImageView::handleKey(const QKeyEvent& event) {
       return true;
     case Qt::Key_F:
     case Qt::Key_H:
-    case Qt::Key_Home:
       fit();
       return true;
     default:

@@ -363,7 +363,6 @@ bool SceneView::handleKey(const QKeyEvent& event) {
   switch (event.key()) {
     case Qt::Key_F:
     case Qt::Key_H:
-    case Qt::Key_Home:
       goHome();
       return true;
     case Qt::Key_K:

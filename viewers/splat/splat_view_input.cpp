@@ -96,7 +96,6 @@ bool SplatView::handleKey(const QKeyEvent& event) {
       return true;
     case Qt::Key_F:
     case Qt::Key_H:
-    case Qt::Key_Home:
       goHome();
       return true;
     case Qt::Key_E:
