@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/quality_history.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -55,7 +57,7 @@ class Collector {
       if (const auto record = project_.record(step, index)) {
         count(*record);
         q.seconds[step] = record->seconds;
-        for (const auto& [name, value] : record->scores) q.scores[step + "." + name] = value;
+        for (const auto& [name, value] : record->scores) q.scores[fmt::format("{}.{}", step, name)] = value;
       } else if (std::string failure = project_.failureOf(step, index); !failure.empty()) {
         q.failures[step] = std::move(failure);
       }
@@ -121,6 +123,7 @@ std::vector<Curve> curvesOf(const QualityHistory& history) {
     }
   }
   std::vector<Curve> list;
+  list.reserve(curves.size());
   for (auto& [name, curve] : curves) list.push_back(std::move(curve));
   return list;
 }

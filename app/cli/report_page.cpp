@@ -203,7 +203,7 @@ class PageWriter {
   void mainCurves() {
     if (h_.frames.empty()) return;
     section("Quality over time",
-            worst_.size() > 0 && h_.frames.size() > kMarked ? "Rings mark the worst frames." : "");
+            !worst_.empty() && h_.frames.size() > kMarked ? "Rings mark the worst frames." : "");
     out_ += "<div class=\"charts\">";
     splitCurve("PSNR", "dB", &PictureScore::psnr);
     splitCurve("SSIM", "", &PictureScore::ssim);

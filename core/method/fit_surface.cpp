@@ -60,6 +60,7 @@ GaussianCloud initialCloud(const PointCloud& seeds) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::vector<Neighbor> near = tree.nearest(seeds.position_m[i], kNeighbors + 1);
       std::vector<vec3> around;
+      around.reserve(near.size());
       float squared = 0;
       for (const Neighbor& k : near) around.push_back(seeds.position_m[k.index]);
       const std::size_t three = std::min<std::size_t>(4, near.size());

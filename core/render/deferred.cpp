@@ -46,8 +46,8 @@ void evaluateMaterials(const Materials& m, const Camera& camera, const GaussianC
 vec3 triple(const Planes& p, std::size_t i) { return {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]}; }
 
 dvec3 rayThrough(const Camera& camera, std::size_t pixel) {
-  const auto x = static_cast<double>(pixel % camera.width), y = static_cast<double>(pixel / camera.width);
-  return rayOf(camera.intrinsics, {x + 0.5, y + 0.5});
+  const std::size_t x = pixel % camera.width, y = pixel / camera.width;
+  return rayOf(camera.intrinsics, {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
 }
 
 // Unit, world; the direction to the camera where the blended normals cancel out.

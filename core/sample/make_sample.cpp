@@ -81,8 +81,8 @@ Image<u8vec3> encoded(const Image<vec3>& linear) {
   Image<u8vec3> out(linear.width, linear.height, u8vec3(0), Encoding::Srgb);
   for (std::size_t i = 0; i < out.pixels.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      out.pixels[i][k] =
-          static_cast<std::uint8_t>(srgbFromLinear(glm::clamp(linear.pixels[i][k], 0.0f, 1.0f)) * 255 + 0.5f);
+      out.pixels[i][k] = static_cast<std::uint8_t>(
+          std::lround(srgbFromLinear(glm::clamp(linear.pixels[i][k], 0.0f, 1.0f)) * 255));
     }
   }
   return out;
@@ -91,7 +91,7 @@ Image<u8vec3> encoded(const Image<vec3>& linear) {
 Image<std::uint8_t> coverageBytes(const Image<float>& coverage) {
   Image<std::uint8_t> out(coverage.width, coverage.height);
   for (std::size_t i = 0; i < out.pixels.size(); ++i) {
-    out.pixels[i] = static_cast<std::uint8_t>(glm::clamp(coverage.pixels[i], 0.0f, 1.0f) * 255 + 0.5f);
+    out.pixels[i] = static_cast<std::uint8_t>(std::lround(glm::clamp(coverage.pixels[i], 0.0f, 1.0f) * 255));
   }
   return out;
 }
@@ -160,7 +160,7 @@ class SampleWriter {
   }
 
   fs::path in(const fs::path& relative) const {
-    const fs::path p = folder_ / relative;
+    fs::path p = folder_ / relative;
     fs::create_directories(p.parent_path());
     return p;
   }
