@@ -17,9 +17,9 @@ namespace {
 fs::path findResources() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  const fs::path installed = program.parent_path().parent_path() / "share" / "beam-studio" / "resources";
+  fs::path installed = program.parent_path().parent_path() / "share" / "beam-studio" / "resources";
   if (!failed && fs::is_directory(installed / "recipes", failed)) return installed;
-  const fs::path source = BEAM_SOURCE_RESOURCES;
+  fs::path source = BEAM_SOURCE_RESOURCES;
   if (fs::is_directory(source / "recipes", failed)) return source;
   throw Error(Error::Kind::Storage,
               fmt::format("the program's resources are gone: expected them at \"{}\" or \"{}\"; "

@@ -59,6 +59,7 @@ std::vector<FrameIndex> shownFrames(const QualityHistory& history) {
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   std::vector<FrameIndex> frames;
+  frames.reserve(chosen.size());
   for (const std::size_t f : chosen) frames.push_back(history.frames[f].frame);
   return frames;
 }

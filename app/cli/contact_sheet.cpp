@@ -18,7 +18,9 @@ constexpr int kSide_px = 320;  // of the whole picture; the crop is smaller
 constexpr int kQuality = 85;
 constexpr float kDifferenceGain = 4;
 
-std::uint8_t byteOf(float v) { return static_cast<std::uint8_t>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f); }
+std::uint8_t byteOf(float v) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f));
+}
 
 template <class Value>
 std::vector<std::byte> jpeg(int width, int height, Value&& value) {
@@ -90,6 +92,7 @@ std::vector<ContactRow> contactSheet(const Project& project, const std::vector<F
     if (result) {
       const auto chosen = chosenViews(project.capture(), frame, cameras, progress);
       std::vector<FrameView> views;
+      views.reserve(chosen.size());
       for (const auto& [view, held_out] : chosen) views.push_back(view);
       const std::vector<TrainingView> crops = cropToMasks(views);
       for (std::size_t i = 0; i < crops.size(); ++i) {

@@ -25,7 +25,7 @@ Interrupt::Interrupt() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is a storage error with a message, not a death
   const sigset_t set = handledSignals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  thread_ = std::jthread([this, set](std::stop_token ended) {
+  thread_ = std::jthread([this, set](const std::stop_token& ended) {
     const timespec patience{0, 50'000'000};
     while (!ended.stop_requested()) {
       if (sigtimedwait(&set, nullptr, &patience) < 0) continue;

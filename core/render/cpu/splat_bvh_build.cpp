@@ -69,7 +69,8 @@ struct Bins {
 
 // Cost of a side: its area times the number of leaves it needs.
 float costOf(const Box& box, std::size_t count) {
-  return count == 0 ? 0 : box.area() * static_cast<float>((count + kLeafSize - 1) / kLeafSize);
+  const std::size_t leaves = (count + kLeafSize - 1) / kLeafSize;
+  return count == 0 ? 0 : box.area() * static_cast<float>(leaves);
 }
 
 void considerSplits(const Bins& bins, int axis, Split& best) {
