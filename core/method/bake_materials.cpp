@@ -214,6 +214,7 @@ std::vector<MaterialMaps> bakeMaterials(std::span<const FrameView> views, const 
   }
   weighByLight(baked);
   std::vector<MaterialMaps> maps;
+  maps.reserve(baked.size());
   for (BakedView& v : baked) maps.push_back(std::move(v.maps));
   return maps;
 }

@@ -21,7 +21,8 @@ void Runner::start(Project project, RunRequest request, std::shared_ptr<ComputeD
     JobFinished finished;
     {
       Job job(
-          project, *device, stop, [this](JobEvent event) { events_.push(std::move(event)); }, preview_);
+          project, *device, std::move(stop), [this](JobEvent event) { events_.push(std::move(event)); },
+          preview_);
       finished = job.run(request);
     }
     running_ = false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/take_survey.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -124,7 +126,7 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
         if (state != CellState::Done || !step.per_frame) continue;
         stamps[f] += key.hex();
         for (const auto& [name, value] : records_.at(key).scores) {
-          auto& curve = pass.curves[id + "." + name];
+          auto& curve = pass.curves[fmt::format("{}.{}", id, name)];
           curve.resize(frames, std::numeric_limits<double>::quiet_NaN());
           curve[f] = value;
         }
