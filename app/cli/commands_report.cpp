@@ -24,15 +24,6 @@ struct ReportFlags {
   DeviceChoice device;
 };
 
-std::string textOf(const FieldValue& value) {
-  return std::visit(
-      [](const auto& v) -> std::string {
-        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, bool>) return v ? "true" : "false";
-        return fmt::format("{}", v);
-      },
-      value);
-}
-
 std::vector<std::pair<std::string, std::string>> factsOf(const Project& project) {
   const CaptureSet& capture = project.capture();
   const auto held_out = std::count_if(capture.views.begin(), capture.views.end(),
@@ -148,7 +139,7 @@ int runReport(const ReportFlags& flags, CommandContext& context) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
                                                project.folder().string()));
   }
-  for (const auto& [key, value] : project.document().settings) page.settings.emplace_back(key, textOf(value));
+  for (const auto& [key, value] : project.document().settings) page.settings.emplace_back(key, toText(value));
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
   addEvaluatedFrames(project, page.history);

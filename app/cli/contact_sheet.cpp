@@ -18,10 +18,6 @@ constexpr int kSide_px = 320;  // of the whole picture; the crop is smaller
 constexpr int kQuality = 85;
 constexpr float kDifferenceGain = 4;
 
-std::uint8_t byteOf(float v) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f));
-}
-
 template <class Value>
 std::vector<std::byte> jpeg(int width, int height, Value&& value) {
   Image<u8vec3> image(width, height, u8vec3(0), Encoding::Srgb);

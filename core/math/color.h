@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// sRGB transfer function (IEC 61966-2-1), its slope, and Rec.709 luminance. Scalar, per channel.
+// sRGB transfer function (IEC 61966-2-1), its slope, Rec.709 luminance and bytes. Scalar, per channel.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/math/types.h"
 
@@ -22,5 +24,10 @@ inline float srgbSlope(float c) {
 inline vec3 linearFromSrgb(vec3 c) { return {linearFromSrgb(c.x), linearFromSrgb(c.y), linearFromSrgb(c.z)}; }
 inline vec3 srgbFromLinear(vec3 c) { return {srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z)}; }
 inline float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+// [0, 1] as 0 to 255, rounded; beyond is clamped.
+inline std::uint8_t byteOf(float v) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f));
+}
 
 }  // namespace beam

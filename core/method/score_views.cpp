@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/math/color.h"
 #include "core/method/training_views.h"
 #include "core/render/deferred.h"
 
@@ -12,7 +13,7 @@ namespace beam {
 namespace {
 
 // As it comes back from a PNG.
-float rounded(float v) { return std::floor(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f) / 255.0f; }
+float rounded(float v) { return static_cast<float>(byteOf(v)) / 255.0f; }
 
 Planes planesOf(const Image<vec3>& image) {
   Planes p(image.width, image.height, 3);

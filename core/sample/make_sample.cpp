@@ -81,8 +81,7 @@ Image<u8vec3> encoded(const Image<vec3>& linear) {
   Image<u8vec3> out(linear.width, linear.height, u8vec3(0), Encoding::Srgb);
   for (std::size_t i = 0; i < out.pixels.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      out.pixels[i][k] = static_cast<std::uint8_t>(
-          std::lround(srgbFromLinear(glm::clamp(linear.pixels[i][k], 0.0f, 1.0f)) * 255));
+      out.pixels[i][k] = byteOf(srgbFromLinear(glm::clamp(linear.pixels[i][k], 0.0f, 1.0f)));
     }
   }
   return out;
@@ -91,7 +90,7 @@ Image<u8vec3> encoded(const Image<vec3>& linear) {
 Image<std::uint8_t> coverageBytes(const Image<float>& coverage) {
   Image<std::uint8_t> out(coverage.width, coverage.height);
   for (std::size_t i = 0; i < out.pixels.size(); ++i) {
-    out.pixels[i] = static_cast<std::uint8_t>(std::lround(glm::clamp(coverage.pixels[i], 0.0f, 1.0f) * 255));
+    out.pixels[i] = byteOf(coverage.pixels[i]);
   }
   return out;
 }

@@ -18,10 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::uint8_t byteOf(float v) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f));
-}
-
 Image<u8vec3> bytesOf(const Image<vec3>& image, bool encode) {
   Image<u8vec3> out(image.width, image.height, u8vec3(0), Encoding::Srgb);
   for (std::size_t i = 0; i < out.pixels.size(); ++i) {
