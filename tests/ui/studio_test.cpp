@@ -280,10 +280,3 @@ TEST(Evaluation, ReadsTheScoresThatEvaluateWroteAndLivesWithoutThem) {
 
 }  // namespace
 }  // namespace beam
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
-  QApplication application(argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -376,10 +376,3 @@ TEST_F(SolvedTimeline, ShowsJointsWithTheirTrailsAndTheInfluenceOfThePickedOne) 
 
 }  // namespace
 }  // namespace beam
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
-  QApplication application(argc, argv);
-  return RUN_ALL_TESTS();
-}

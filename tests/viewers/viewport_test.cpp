@@ -307,10 +307,3 @@ TEST(SceneViewport, ColoursTheSkinByTheInfluenceOfAJoint) {
 
 }  // namespace
 }  // namespace beam
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
-  QApplication application(argc, argv);
-  return RUN_ALL_TESTS();
-}
