@@ -106,4 +106,35 @@ PointCloud readPointsPly(const std::filesystem::path& path) {
   return points;
 }
 
+void writePosePly(const std::filesystem::path& path, const Pose& pose) {
+  std::string out = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
+      "float z\nproperty float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float "
+      "rot_3\nend_header\n",
+      pose.size());
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const quat& q = pose.rotation[i];
+    append(out, pose.position_m[i]);
+    append(out, vec4(q.w, q.x, q.y, q.z));
+  }
+  writeFileAtomically(path, out);
+}
+
+Pose readPosePly(const std::filesystem::path& path) {
+  const std::vector<PlyElement> elements = readPly(path);
+  const PlyElement& vertex = vertexOf(elements, path);
+  Pose pose{positionsOf(vertex, path), {}};
+  const auto first = vertex.column("rot_0");
+  if (!first || vertex.column("rot_3") != *first + 3)
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected the columns rot_0 to rot_3", path.string()));
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const float* q = vertex.row(i) + *first;
+    pose.rotation.emplace_back(q[0], q[1], q[2], q[3]);
+    const float length = glm::length(pose.rotation.back());
+    if (!(std::isfinite(length) && length > 0))
+      throw Error(Error::Kind::Data, fmt::format("\"{}\": rotation {} is none", path.string(), i));
+  }
+  return pose;
+}
+
 }  // namespace beam

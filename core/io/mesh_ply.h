@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangle meshes and plain point clouds as PLY, ASCII or binary of either byte order on reading, binary
-// little-endian on writing.
+// Triangle meshes, plain point clouds and poses as PLY, ASCII or binary of either byte order on reading,
+// binary little-endian on writing.
 #pragma once
 
 #include <filesystem>
 
 #include "core/scene/capture.h"
 #include "core/scene/mesh.h"
+#include "core/scene/pose.h"
 
 namespace beam {
 
@@ -17,5 +18,9 @@ void writePointsPly(const std::filesystem::path& path, const PointCloud& points)
 // bytes.
 Mesh readMeshPly(const std::filesystem::path& path);
 PointCloud readPointsPly(const std::filesystem::path& path);
+
+// x y z and rot_0..3 (w x y z), as a splat PLY names them.
+void writePosePly(const std::filesystem::path& path, const Pose& pose);
+Pose readPosePly(const std::filesystem::path& path);
 
 }  // namespace beam

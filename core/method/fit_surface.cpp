@@ -8,10 +8,8 @@
 
 #include "core/base/parallel.h"
 #include "core/math/knn.h"
-#include "core/method/training_views.h"
 #include "core/method/visual_hull.h"
 #include "core/optim/mcmc.h"
-#include "core/optim/normal_loss.h"
 #include "core/optim/schedule.h"
 
 namespace beam {
@@ -75,49 +73,34 @@ GaussianCloud initialCloud(const PointCloud& seeds) {
   return c;
 }
 
-// 1.1 x the radius of the camera centres around their mean: what position rates are relative to
-// (methods 1.11).
-float sceneExtent(std::span<const FrameView> views) {
-  dvec3 mean(0);
-  for (const FrameView& v : views) mean += centerOf(v.camera) / static_cast<double>(views.size());
-  double radius = 0;
-  for (const FrameView& v : views) radius = std::max(radius, glm::length(centerOf(v.camera) - mean));
-  return static_cast<float>(1.1 * radius);
-}
-
 class SurfaceTrainer {
  public:
   SurfaceTrainer(std::span<const FrameView> views, const GaussianCloud& cloud,
-                 const FitSurfaceOptions& options, ComputeDevice& device)
+                 const FitSurfaceOptions& options, bool geometry, ComputeDevice& device)
       : options_(options),
-        views_(cropToMasks(views)),
+        geometry_(geometry),
+        loss_(views, lossOptions(options), geometry, device),
         model_(cloud),
-        ops_(device.newTrainingOps()),
-        device_(device),
         extent_(sceneExtent(views)) {
-    for (const TrainingView& v : views_) cameras_.push_back(v.camera);
     refine_start_ = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
   }
 
   // For a cloud whose values hold the filter already.
   void takeFilterOut() {
-    model_.updateFilter(cameras_, static_cast<float>(options_.filter));
+    model_.updateFilter(loss_.cameras(), static_cast<float>(options_.filter));
     model_.unbakeFilter();
   }
 
-  void run(int begin, int end, bool geometry, Progress& progress, const CloudPreview& preview) {
-    const RasterDesc desc{
-        .width = cameras_[0].width, .height = cameras_[0].height, .geometry = geometry, .gradients = true};
-    raster_ = device_.newRasterizer(desc);
+  void run(int begin, int end, Progress& progress, const CloudPreview& preview) {
     progress.expect(end - begin);
     auto shown = std::chrono::steady_clock::now();
     const int first_cap = static_cast<int>(model_.size());
     for (int step = begin; step < end; ++step) {
       progress.step();
       if (step % kFilterEvery == 0 || step == begin)
-        model_.updateFilter(cameras_, static_cast<float>(options_.filter));
-      trainOnce(step, step - begin + 1, geometry);
-      if (!geometry) changeCount(step, first_cap);
+        model_.updateFilter(loss_.cameras(), static_cast<float>(options_.filter));
+      trainOnce(step, step - begin + 1);
+      if (!geometry_) changeCount(step, first_cap);
       const auto now = std::chrono::steady_clock::now();
       if (preview && now - shown > std::chrono::seconds(1)) {
         preview(std::make_shared<GaussianCloud>(model_.cloud()));
@@ -156,35 +139,18 @@ class SurfaceTrainer {
     return r;
   }
 
-  void trainOnce(int step, int adam_step, bool geometry) {
-    const TrainingView& view = views_[viewOfStep(step, views_.size(), options_.seed)];
-    const RandomStream random(options_.seed, step, 0xbac6u);
-    const vec3 background =
-        view.mask.empty() ? vec3(0) : vec3(random.uniform(0), random.uniform(1), random.uniform(2));
-    compose(view, background, target_);
+  void trainOnce(int step, int adam_step) {
     model_.activate();
-    raster_->forward(model_.physical(), view.camera, shDegree(step), background, images_);
-    ops_->photometric(images_.color, target_, static_cast<float>(options_.ssim_weight), upstream_.color);
-    maskLoss(images_.alpha, view, options_.mask_weight, upstream_.alpha);
-    if (geometry) {
-      for (Planes* p : {&upstream_.normal, &upstream_.depth, &upstream_.median_depth}) {
-        std::fill(p->values.begin(), p->values.end(), 0.0f);
-      }
-      normalLoss(images_, view.camera.intrinsics,
-                 {.weight = static_cast<float>(options_.normal_weight),
-                  .expected_share = static_cast<float>(options_.expected_depth_share)},
-                 upstream_);
-    }
-    raster_->backward(upstream_, gradients_);
+    loss_.gradient(model_.physical(), step, shDegree(step), gradients_);
     const Regularizers regularizers =
-        geometry ? Regularizers{}
-                 : Regularizers{.opacity = static_cast<float>(options_.opacity_regularizer),
-                                .scale = static_cast<float>(options_.scale_regularizer),
-                                .isotropy = static_cast<float>(options_.isotropy_weight),
-                                .size = static_cast<float>(options_.size_weight)};
+        geometry_ ? Regularizers{}
+                  : Regularizers{.opacity = static_cast<float>(options_.opacity_regularizer),
+                                 .scale = static_cast<float>(options_.scale_regularizer),
+                                 .isotropy = static_cast<float>(options_.isotropy_weight),
+                                 .size = static_cast<float>(options_.size_weight)};
     const LearningRates r = rates(step);
-    model_.step(gradients_, r, shDegree(step), regularizers, adam_step, *ops_);
-    if (!geometry) model_.addNoise(static_cast<float>(options_.noise) * r.position_m, options_.seed, step);
+    model_.step(gradients_, r, shDegree(step), regularizers, adam_step, loss_.ops());
+    if (!geometry_) model_.addNoise(static_cast<float>(options_.noise) * r.position_m, options_.seed, step);
   }
 
   // MCMC every `interval` steps; the growth reaches the cap half way through the appearance steps.
@@ -199,16 +165,11 @@ class SurfaceTrainer {
   }
 
   FitSurfaceOptions options_;
-  std::vector<TrainingView> views_;
-  std::vector<Camera> cameras_;
+  bool geometry_;
+  ViewLoss loss_;
   GaussianModel model_;
-  std::unique_ptr<TrainingOps> ops_;
-  ComputeDevice& device_;
-  std::unique_ptr<Rasterizer> raster_;
   float extent_;
   int refine_start_ = 0;
-  Planes target_;
-  RasterImages images_, upstream_;
   GaussianBuffers gradients_;
 };
 
@@ -336,22 +297,38 @@ void describe(Fields& f, FitSurfaceOptions& o) {
   });
 }
 
+float sceneExtent(std::span<const FrameView> views) {
+  dvec3 mean(0);
+  for (const FrameView& v : views) mean += centerOf(v.camera) / static_cast<double>(views.size());
+  double radius = 0;
+  for (const FrameView& v : views) radius = std::max(radius, glm::length(centerOf(v.camera) - mean));
+  return static_cast<float>(1.1 * radius);
+}
+
+ViewLossOptions lossOptions(const FitSurfaceOptions& o) {
+  return {.ssim_weight = o.ssim_weight,
+          .mask_weight = o.mask_weight,
+          .normal_weight = o.normal_weight,
+          .expected_depth_share = o.expected_depth_share,
+          .seed = o.seed};
+}
+
 GaussianCloud fitAppearance(std::span<const FrameView> views, const PointCloud& seeds,
                             const FitSurfaceOptions& options, ComputeDevice& device, Progress& progress,
                             const CloudPreview& preview) {
-  SurfaceTrainer trainer(views, initialCloud(seeds), options, device);
+  SurfaceTrainer trainer(views, initialCloud(seeds), options, false, device);
   const int end = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
-  trainer.run(0, end, false, progress, preview);
+  trainer.run(0, end, progress, preview);
   return trainer.cloud();
 }
 
 GaussianCloud refineGeometry(std::span<const FrameView> views, const GaussianCloud& cloud,
                              const FitSurfaceOptions& options, ComputeDevice& device, Progress& progress,
                              const CloudPreview& preview) {
-  SurfaceTrainer trainer(views, cloud, options, device);
+  SurfaceTrainer trainer(views, cloud, options, true, device);
   const int begin = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
   trainer.takeFilterOut();
-  trainer.run(begin, options.iterations, true, progress, preview);
+  trainer.run(begin, options.iterations, progress, preview);
   trainer.pruneOutsideHull(VisualHull(views));
   return trainer.cloud();
 }

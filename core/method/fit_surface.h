@@ -8,7 +8,7 @@
 #include "core/base/fields.h"
 #include "core/base/progress.h"
 #include "core/method/preview.h"
-#include "core/render/device.h"
+#include "core/method/view_loss.h"
 #include "core/scene/frame_views.h"
 
 namespace beam {
@@ -35,6 +35,10 @@ struct FitSurfaceOptions {
   double expected_depth_share = 0.4;  // of E_normal (methods 2.7); group "refine"
 };
 void describe(Fields& fields, FitSurfaceOptions& options);
+// 1.1 x the radius of the camera centres around their mean, metres: what position rates are relative to
+// (methods 1.11).
+float sceneExtent(std::span<const FrameView> views);
+ViewLossOptions lossOptions(const FitSurfaceOptions& options);
 
 // Seeds (methods 3.8): points on the visual hull of the masks, coloured by the views, or `seed_points` where
 // the views carry no masks. Throws Error{Data} when neither gives a point.

@@ -99,4 +99,27 @@ void JointWarp::backward(const Pose& joints, const PoseGradient& skin_gradient,
   });
 }
 
+void JointWarp::backwardToRest(const Pose& joints, const PoseGradient& skin_gradient,
+                               PoseGradient& gradient) const {
+  const std::vector<quat> r = turns(joints);
+  const auto n = static_cast<std::size_t>(anchors_.per_point);
+  parallelFor(skin_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      vec3 sum(0);
+      for (std::size_t s = i * n; s < (i + 1) * n; ++s) {
+        sum += anchors_.weight[s] * (glm::conjugate(r[anchors_.target[s]]) * skin_gradient.position[i]);
+      }
+      gradient.position[i] += sum;
+      gradient.rotation[i] += throughLeftProduct(glm::normalize(blend(r, i)), skin_gradient.rotation[i]);
+    }
+  });
+}
+
+void JointWarp::setRestSkin(Pose skin) {
+  if (skin.size() != skin_.size())
+    throw Error(Error::Kind::Bug,
+                fmt::format("{} skin Gaussians for a warp of {}", skin.size(), skin_.size()));
+  skin_ = std::move(skin);
+}
+
 }  // namespace beam

@@ -19,6 +19,11 @@ class JointWarp {
 
   // Adds the joints' gradient to `gradient` from that of skin(joints).
   void backward(const Pose& joints, const PoseGradient& skin_gradient, PoseGradient& gradient) const;
+  // Likewise that of the skin at rest.
+  void backwardToRest(const Pose& joints, const PoseGradient& skin_gradient, PoseGradient& gradient) const;
+
+  // Another skin at rest on the same anchors. Throws Error{Bug} for another count.
+  void setRestSkin(Pose skin);
 
   const Pose& restSkin() const { return skin_; }
   const Pose& restJoints() const { return joints_; }

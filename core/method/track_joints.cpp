@@ -66,10 +66,7 @@ class LevelView {
     drawn_ = model.physical();
     const RasterDesc desc{.width = cameras[0].width, .height = cameras[0].height, .gradients = true};
     raster_ = device.newRasterizer(desc);
-    for (const Camera& c : cameras) {
-      const double depth = glm::length(centerOf(c) - dvec3(centroid(joints.position_m)));
-      pixel_m_ += depth / c.intrinsics.fx / static_cast<double>(cameras.size());
-    }
+    pixel_m_ = pixelAtSubject(cameras, joints.position_m);
   }
 
   std::size_t size() const { return views_.size(); }
@@ -100,12 +97,6 @@ class LevelView {
   }
 
  private:
-  static vec3 centroid(std::span<const vec3> points) {
-    dvec3 sum(0);
-    for (const vec3& p : points) sum += dvec3(p);
-    return vec3(sum / static_cast<double>(points.size()));
-  }
-
   std::unique_ptr<TrainingOps> ops_;
   double mask_weight_;
   std::vector<TrainingView> views_;
@@ -127,7 +118,7 @@ class JointTracker {
         previous_(poseOf(history.previous)),
         pose_(previous_) {
     const std::size_t coarse = nodesOf(options.levels > 0 ? 1 : 0);
-    if (options.levels > 0) order_ = spreadOrder(history.first.position_m, coarse);
+    if (options.levels > 0) order_ = spreadOrder(history.rest.position_m, coarse);
   }
 
   TrackedJoints run(Progress& progress, const CloudPreview& preview) {
@@ -148,7 +139,7 @@ class JointTracker {
 
  private:
   std::size_t nodesOf(int level) const {
-    const std::size_t all = history_.first.size();
+    const std::size_t all = history_.rest.size();
     return std::min(all, std::max<std::size_t>(kFewestNodes, all >> (2 * level)));
   }
 
@@ -178,10 +169,10 @@ class JointTracker {
 
   double moveNodes(int level, LevelView& view, Progress& progress) {
     const std::span<const std::uint32_t> nodes(order_.data(), nodesOf(level));
-    const Pose rest = chosen(poseOf(history_.first), nodes), start = chosen(pose_, nodes);
+    const Pose rest = chosen(history_.rest, nodes), start = chosen(pose_, nodes);
     const float reach = static_cast<float>(options_.rigid_spacings * meanSpacing(rest.position_m));
     const JointWarp warp(pose_, start,
-                         anchorTo(history_.first.position_m, rest.position_m, kNeighbors, reach));
+                         anchorTo(history_.rest.position_m, rest.position_m, kNeighbors, reach));
     PoseModel model(start);
     const Pose before = chosen(previous_, nodes);
     const double rigid = descend(level, graphOf(rest.position_m), before, model, view, progress, &warp);
@@ -192,7 +183,7 @@ class JointTracker {
   double moveJoints(LevelView& view, Progress& progress) {
     PoseModel model(pose_);
     const double rigid =
-        descend(0, graphOf(history_.first.position_m), previous_, model, view, progress, nullptr);
+        descend(0, graphOf(history_.rest.position_m), previous_, model, view, progress, nullptr);
     pose_ = model.pose();
     return rigid;
   }
@@ -272,6 +263,11 @@ TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& 
                           const TrackJointsOptions& options, ComputeDevice& device, Progress& progress,
                           const CloudPreview& preview) {
   return JointTracker(views, history, options, device).run(progress, preview);
+}
+
+double jointResidual(std::span<const FrameView> views, const GaussianCloud& joints, double mask_weight,
+                     ComputeDevice& device) {
+  return LevelView(views, 0, joints, mask_weight, device).lossOfAll(poseOf(joints));
 }
 
 void describe(Fields& f, TrackJointsOptions& o) {

@@ -10,6 +10,7 @@
 #include "core/method/preview.h"
 #include "core/render/device.h"
 #include "core/scene/frame_views.h"
+#include "core/scene/pose.h"
 
 namespace beam {
 
@@ -43,7 +44,7 @@ struct TrackedJoints {
 
 // What the tracker knows of the frames before: all of equal count and order.
 struct JointHistory {
-  const GaussianCloud& first;      // of the take: the graph
+  const Pose& rest;                // on the first frame: the graph
   const GaussianCloud& previous;   // frame t - 1
   std::span<const vec3> before_m;  // positions of frame t - 2; empty: none, no velocity
 };
@@ -55,6 +56,10 @@ struct JointHistory {
 TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& history,
                           const TrackJointsOptions& options, ComputeDevice& device, Progress& progress,
                           const CloudPreview& preview = {});
+
+// `residual` of joints as they stand.
+double jointResidual(std::span<const FrameView> views, const GaussianCloud& joints, double mask_weight,
+                     ComputeDevice& device);
 
 // Mean distance of a point to its nearest neighbour, metres.
 double meanSpacing(std::span<const vec3> points);

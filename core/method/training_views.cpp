@@ -110,4 +110,15 @@ double maskLoss(const Planes& alpha, const TrainingView& view, double weight, Pl
   return sum * weight / static_cast<double>(pixels);
 }
 
+double pixelAtSubject(std::span<const Camera> cameras, std::span<const vec3> points_m) {
+  dvec3 middle(0);
+  for (const vec3& p : points_m) middle += dvec3(p);
+  middle = dvec3(vec3(middle / static_cast<double>(points_m.size())));
+  double size = 0;
+  for (const Camera& c : cameras) {
+    size += glm::length(centerOf(c) - middle) / c.intrinsics.fx / static_cast<double>(cameras.size());
+  }
+  return size;
+}
+
 }  // namespace beam

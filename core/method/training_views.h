@@ -28,4 +28,7 @@ void compose(const TrainingView& view, vec3 background, Planes& target);
 // mask.
 double maskLoss(const Planes& alpha, const TrainingView& view, double weight, Planes& gradient);
 
+// Metres that a pixel of these cameras spans at the middle of the points, mean over the cameras.
+double pixelAtSubject(std::span<const Camera> cameras, std::span<const vec3> points_m);
+
 }  // namespace beam

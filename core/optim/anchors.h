@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of a set of Gaussians, and the few weighted neighbours that a Gaussian hangs on: the joint graph, the
+// The few weighted neighbours that a Gaussian hangs on: the joint graph, the
 // skin graph and the binding of the skin to the joints are all of this form (methods 3.2, 3.5).
 #pragma once
 
@@ -7,17 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "core/math/types.h"
+#include "core/scene/pose.h"
 
 namespace beam {
-
-// Of joints or skin Gaussians at one moment; both arrays have size() entries.
-struct Pose {
-  std::vector<vec3> position_m;
-  std::vector<quat> rotation;  // world_from_gaussian; read as q / |q|
-
-  std::size_t size() const { return position_m.size(); }
-};
 
 // dL/d(pose); the rotation's gradient is with respect to the stored quaternion, w x y z.
 struct PoseGradient {

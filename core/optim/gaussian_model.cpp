@@ -134,6 +134,48 @@ void GaussianModel::addShapeGradient(GaussianBuffers& gradients, const Regulariz
   });
 }
 
+void GaussianModel::keepReference() {
+  reference_.assign(values_.plane(L::kScale), values_.plane(L::kExtra - 1) + values_.stride);
+  std::copy_n(raw_.data(), raw_.size(), reference_.data());
+}
+
+double GaussianModel::temporalEnergy(float shape_share) const {
+  double energy = 0;
+  for (int p = L::kScale; p < L::kExtra; ++p) {
+    const bool shape = p <= L::kOpacity;
+    const float* now = shape ? raw(p - L::kScale) : values_.plane(p);
+    const float* then = reference_.data() + values_.stride * (p - L::kScale);
+    double sum = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double change = static_cast<double>(now[i]) - then[i];
+      sum += change * change;
+    }
+    energy += shape ? shape_share * sum : sum;
+  }
+  return energy;
+}
+
+void GaussianModel::takeAppearance(const GaussianModel& other) {
+  raw_ = other.raw_;
+  std::copy_n(other.values_.plane(L::kSh), values_.stride * (L::kExtra - L::kSh), values_.plane(L::kSh));
+}
+
+void GaussianModel::place(const Pose& pose) { setPose(values_, pose); }
+
+void GaussianModel::addTemporalGradient(GaussianBuffers& gradients, const Regularizers& regularizers) const {
+  if (regularizers.temporal == 0 || reference_.empty()) return;
+  parallelFor(size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (int p = L::kScale; p < L::kExtra; ++p) {
+      const bool shape = p <= L::kOpacity;
+      const float weight = 2 * regularizers.temporal * (shape ? regularizers.temporal_shape : 1);
+      const float* now = shape ? raw(p - L::kScale) : values_.plane(p);
+      const float* then = reference_.data() + values_.stride * (p - L::kScale);
+      float* gradient = gradients.plane(p);
+      for (std::size_t i = begin; i < end; ++i) gradient[i] += weight * (now[i] - then[i]);
+    }
+  });
+}
+
 void GaussianModel::step(GaussianBuffers& gradients, const LearningRates& rates, int sh_degree,
                          const Regularizers& regularizers, int step, TrainingOps& ops) {
   const float per_opacity = regularizers.opacity / static_cast<float>(size());
@@ -154,6 +196,7 @@ void GaussianModel::step(GaussianBuffers& gradients, const LearningRates& rates,
     }
   });
   addShapeGradient(gradients, regularizers);
+  addTemporalGradient(gradients, regularizers);
   std::array<AdamPlane, L::kExtra> planes{};
   for (int p = 0; p < L::kExtra; ++p) {
     planes[p].learning_rate = p < L::kRotation                      ? rates.position_m

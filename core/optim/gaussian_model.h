@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/optim/pose_model.h"
 #include "core/render/training_ops.h"
 #include "core/scene/camera.h"
 #include "core/scene/gaussian_cloud.h"
@@ -29,6 +30,10 @@ struct Regularizers {
   float scale = 0;
   float isotropy = 0;
   float size = 0;
+  // E_temp of BEAM eq. 10 against keepReference(): a plain sum over Gaussians of squared changes of raw
+  // values, SH times 1, log scale and logit opacity times `temporal_shape` (methods 3.7).
+  float temporal = 0;
+  float temporal_shape = 0.003f;
 };
 
 class GaussianModel {
@@ -47,6 +52,15 @@ class GaussianModel {
   void updateFilter(std::span<const Camera> cameras, float strength);
   // Takes the present filter out of the raw values: for a cloud that was made with the filter baked in.
   void unbakeFilter();
+
+  // The present raw appearance is what E_temp holds on to.
+  void keepReference();
+  // E_temp without its weight.
+  double temporalEnergy(float shape_share) const;
+  // Raw appearance of as many others; poses, moments and the reference stay.
+  void takeAppearance(const GaussianModel& other);
+  // Moves the Gaussians; appearance and moments stay.
+  void place(const Pose& pose);
 
   // Chains dL/d(physical) to the raw parameters (in place) and takes Adam's step `step` (from 1).
   void step(GaussianBuffers& gradients, const LearningRates& rates, int sh_degree,
@@ -71,6 +85,7 @@ class GaussianModel {
   void resize(std::size_t count);
   // dE/d(log scale) of the shape terms, into chained gradients.
   void addShapeGradient(GaussianBuffers& gradients, const Regularizers& regularizers) const;
+  void addTemporalGradient(GaussianBuffers& gradients, const Regularizers& regularizers) const;
   float* raw(int k) { return raw_.data() + values_.stride * k; }  // log scale 0-2, logit opacity 3
   const float* raw(int k) const { return raw_.data() + values_.stride * k; }
 
@@ -78,6 +93,7 @@ class GaussianModel {
   AlignedVector<float> raw_;  // 4 planes
   AlignedVector<float> filter_;  // metres
   GaussianBuffers first_moment_, second_moment_;
+  AlignedVector<float> reference_;  // planes from kScale on, as Adam sees them
 };
 
 // Opacity and scale factor of n composited copies that look like one Gaussian of opacity o (methods 1.12).

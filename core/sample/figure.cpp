@@ -24,7 +24,7 @@ float roundCone(vec3 p, vec3 a, vec3 b, float ra, float rb) {
 
 }  // namespace
 
-Figure::Figure(const Pose& pose) {
+Figure::Figure(const BodyPose& pose) {
   const PosedBones bones = placeBones(pose);
   const auto add = [&](int bone, Cloth cloth, vec3 a, vec3 b, float ra, float rb, vec3 stretch = vec3(1)) {
     parts_.push_back({a, b, ra, rb, stretch, bone, cloth, bones.rotation[bone], bones.translation[bone]});

@@ -30,7 +30,7 @@ struct Surface {
 
 class Figure {
  public:
-  explicit Figure(const Pose& pose);
+  explicit Figure(const BodyPose& pose);
 
   // Signed distance (negative inside), in metres; exact only near the surface.
   float distance(vec3 x) const;

@@ -78,7 +78,7 @@ dmat3 hingeFrame(dvec3 along, dvec3 hinge) {
 }
 
 // Two bones to a wrist: the elbow lies in the half plane that `key` names.
-void reach(Pose& p, bool right, const ArmKey& key) {
+void reach(BodyPose& p, bool right, const ArmKey& key) {
   const dvec3 mirror(right ? -1 : 1, 1, 1);
   const int upper = right ? RUpper : LUpper, fore = right ? RFore : LFore, hand = right ? RHand : LHand;
   const dvec3 shoulder(bonePivot(upper)), elbow0(bonePivot(fore)), wrist0(bonePivot(hand));
@@ -99,7 +99,7 @@ void reach(Pose& p, bool right, const ArmKey& key) {
 }
 
 // A leg on the ground, or lifted by up to 1.
-void stand(Pose& p, bool right, double lift) {
+void stand(BodyPose& p, bool right, double lift) {
   const int thigh = right ? RThigh : LThigh, shin = right ? RShin : LShin, foot = right ? RFoot : LFoot;
   const vec3 x(1, 0, 0), y(0, 1, 0);
   const double hip = -7 - 20 * lift, knee = 12 + 34 * lift, apart = right ? 7 : -7;
@@ -128,8 +128,8 @@ double danceYaw_deg(double frame) {
   return 180 * (half + turnShare((t - kTurnStart) / (kTurnEnd - kTurnStart)));
 }
 
-Pose danceAt(double frame) {
-  Pose p;
+BodyPose danceAt(double frame) {
+  BodyPose p;
   const vec3 x(1, 0, 0), z(0, 0, 1);
   const double yaw = danceYaw_deg(frame), speed = danceYaw_deg(frame + 0.5) - danceYaw_deg(frame - 0.5);
   const auto slow = [&](double period) { return std::sin(kTau * frame / period); };

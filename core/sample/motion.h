@@ -12,7 +12,7 @@ constexpr double kDanceFrames_s = 30;  // frames of the dance a second
 constexpr double kDanceHalf_frames = 30;
 
 // Continuous with its first derivative in time.
-Pose danceAt(double frame);
+BodyPose danceAt(double frame);
 
 // The turn of the body about the vertical since frame 0.
 double danceYaw_deg(double frame);

@@ -37,7 +37,7 @@ mat3 turnAbout(vec3 axis, double degrees) {
       glm::mat3_cast(glm::angleAxis(static_cast<float>(glm::radians(degrees)), glm::normalize(axis))));
 }
 
-PosedBones placeBones(const Pose& pose) {
+PosedBones placeBones(const BodyPose& pose) {
   PosedBones out;
   for (int i = 0; i < Count; ++i) {
     const BoneRest& b = kSkeleton[i];
@@ -49,8 +49,8 @@ PosedBones placeBones(const Pose& pose) {
   return out;
 }
 
-Pose portraitPose() {
-  Pose p;
+BodyPose portraitPose() {
+  BodyPose p;
   const double arms = 0.5 - 0.5 * std::cos(2 * 3.14159265358979 * 0.16);
   const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   p.root_shift = vec3(0, 0, -0.03f);

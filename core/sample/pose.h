@@ -30,8 +30,8 @@ enum Id {
 }  // namespace bone
 
 // Rotations of the bones about their pivots, in the parent's frame.
-struct Pose {
-  Pose() { local.fill(mat3(1.0f)); }
+struct BodyPose {
+  BodyPose() { local.fill(mat3(1.0f)); }
   std::array<mat3, bone::Count> local;
   vec3 root_shift{0};
 };
@@ -43,10 +43,10 @@ struct PosedBones {
 };
 
 vec3 bonePivot(int bone);  // rest pose, arms hanging in an A
-PosedBones placeBones(const Pose& pose);
+PosedBones placeBones(const BodyPose& pose);
 mat3 turnAbout(vec3 axis, double degrees);
 
 // Of a capture of one frame: arms before the body.
-Pose portraitPose();
+BodyPose portraitPose();
 
 }  // namespace beam

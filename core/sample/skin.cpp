@@ -29,7 +29,7 @@ std::array<DualQuaternion, bone::Count> motionOf(const PosedBones& from, const P
 
 }  // namespace
 
-Skin::Skin(const Pose& first, float cell_m)
+Skin::Skin(const BodyPose& first, float cell_m)
     : bones_(placeBones(first)), figure_(first), first_(figure_.surface(cell_m)) {
   weigh();
   findTangents();
@@ -101,7 +101,7 @@ void Skin::turnNormals(Surface& s, const std::vector<quat>& turns) const {
   });
 }
 
-Surface Skin::posed(const Pose& pose) const {
+Surface Skin::posed(const BodyPose& pose) const {
   const auto motion = motionOf(bones_, placeBones(pose));
   Surface s = first_;
   std::vector<quat> turns(s.normals.size());

@@ -10,11 +10,11 @@ namespace beam {
 class Skin {
  public:
   // Parts of the body that are not joined must stand apart in the first pose.
-  Skin(const Pose& first, float cell_m);
+  Skin(const BodyPose& first, float cell_m);
 
   const Figure& figure() const { return figure_; }  // in the first pose
   const Surface& first() const { return first_; }
-  Surface posed(const Pose& pose) const;
+  Surface posed(const BodyPose& pose) const;
 
  private:
   struct Influence {

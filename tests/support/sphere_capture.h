@@ -15,6 +15,7 @@ struct SphereCapture {
   vec3 center{0, 1, 0};
   int cameras = 10;
   int size_px = 64;
+  quat turn{1, 0, 0, 0};  // of the texture, about the centre
 };
 
 inline vec3 sphereColor(vec3 n) {
@@ -47,7 +48,7 @@ inline FrameView photographSphere(const SphereCapture& s, const Camera& camera, 
       const double b = glm::dot(o, d), c = glm::dot(o, o) - s.radius_m * s.radius_m;
       if (b * b < c) continue;
       const vec3 n = glm::normalize(vec3(o + (-b - std::sqrt(b * b - c)) * d));
-      v.photo(x, y) = u8vec3(sphereColor(n) * 255.0f + 0.5f);
+      v.photo(x, y) = u8vec3(sphereColor(glm::conjugate(s.turn) * n) * 255.0f + 0.5f);
       v.mask(x, y) = 255;
     }
   }

@@ -57,22 +57,25 @@ TEST(JointWarp, KeepsUnitRotationsWhereJointsDisagree) {
   for (const quat& q : warpOf().skin(joints).rotation) EXPECT_NEAR(glm::length(q), 1, 1e-5);
 }
 
-TEST(JointWarp, HasTheGradientOfItsDifferences) {
-  const JointWarp warp = warpOf();
+// Joints that stand apart from their rest in any way, and a gradient from above.
+struct Disturbed {
   Pose joints = moved(kJoints, glm::angleAxis(0.7f, vec3(0, 1, 0)), vec3(0.05f));
-  const Pose noise = randomPose(joints.size(), 0.02f, 9);
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    joints.position_m[k] += noise.position_m[k];
-    joints.rotation[k] = 0.8f * glm::slerp(joints.rotation[k], noise.rotation[k], 0.1f);
+  PoseGradient up{kSkin.size()};
+
+  Disturbed() {
+    const Pose noise = randomPose(joints.size(), 0.02f, 9);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      joints.position_m[k] += noise.position_m[k];
+      joints.rotation[k] = 0.8f * glm::slerp(joints.rotation[k], noise.rotation[k], 0.1f);
+    }
+    const RandomStream random(11, 0, 0);
+    for (std::size_t i = 0; i < kSkin.size(); ++i) {
+      for (int k = 0; k < 3; ++k) up.position[i][k] = random.normal(8 * i + k);
+      for (int k = 0; k < 4; ++k) up.rotation[i][k] = 0.1f * random.normal(8 * i + 4 + k);
+    }
   }
-  const RandomStream random(11, 0, 0);
-  PoseGradient up(kSkin.size());
-  for (std::size_t i = 0; i < kSkin.size(); ++i) {
-    for (int k = 0; k < 3; ++k) up.position[i][k] = random.normal(8 * i + k);
-    for (int k = 0; k < 4; ++k) up.rotation[i][k] = 0.1f * random.normal(8 * i + 4 + k);
-  }
-  const auto loss = [&] {
-    const Pose skin = warp.skin(joints);
+
+  double loss(const Pose& skin) const {
     double sum = 0;
     for (std::size_t i = 0; i < skin.size(); ++i) {
       const quat& q = skin.rotation[i];
@@ -80,11 +83,14 @@ TEST(JointWarp, HasTheGradientOfItsDifferences) {
       sum += glm::dot(dvec4(up.rotation[i]), dvec4(q.w, q.x, q.y, q.z));
     }
     return sum;
-  };
-  PoseGradient gradient(joints.size());
-  warp.backward(joints, up, gradient);
+  }
+};
+
+// Against central differences of `loss` in the numbers of `pose`.
+template <class Loss>
+void expectGradient(Pose& pose, const PoseGradient& gradient, Loss&& loss) {
   double largest = 0, worst = 0;
-  testing::forEachNumber(joints, gradient, [&](float& number, float analytic) {
+  testing::forEachNumber(pose, gradient, [&](float& number, float analytic) {
     const float keep = number, h = 2e-3f;
     number = keep + h;
     const double above = loss();
@@ -96,6 +102,26 @@ TEST(JointWarp, HasTheGradientOfItsDifferences) {
     worst = std::max(worst, std::abs(numeric - analytic));
   });
   EXPECT_LT(worst, 1e-3 * largest);
+}
+
+TEST(JointWarp, HasTheGradientOfItsDifferences) {
+  const JointWarp warp = warpOf();
+  Disturbed d;
+  PoseGradient gradient(d.joints.size());
+  warp.backward(d.joints, d.up, gradient);
+  expectGradient(d.joints, gradient, [&] { return d.loss(warp.skin(d.joints)); });
+}
+
+TEST(JointWarp, HasTheGradientOfItsDifferencesInTheSkinAtRest) {
+  JointWarp warp = warpOf();
+  const Disturbed d;
+  PoseGradient gradient(kSkin.size());
+  warp.backwardToRest(d.joints, d.up, gradient);
+  Pose rest = kSkin;
+  expectGradient(rest, gradient, [&] {
+    warp.setRestSkin(rest);
+    return d.loss(warp.skin(d.joints));
+  });
 }
 
 TEST(JointWarp, GivesTheSameBitsForAnyNumberOfThreads) {
@@ -113,7 +139,11 @@ TEST(JointWarp, GivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.rotation, two.rotation);
 }
 
-TEST(JointWarp, RefusesAPoseOfOtherJoints) { EXPECT_THROW(warpOf().skin(randomPose(7, 1, 1)), Error); }
+TEST(JointWarp, RefusesAPoseOfOtherJointsAndAnotherSkin) {
+  EXPECT_THROW(warpOf().skin(randomPose(7, 1, 1)), Error);
+  JointWarp warp = warpOf();
+  EXPECT_THROW(warp.setRestSkin(randomPose(7, 1, 1)), Error);
+}
 
 }  // namespace
 }  // namespace beam

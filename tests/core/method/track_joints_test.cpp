@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/method/fit_surface.h"
+#include "core/optim/pose_model.h"
 #include "tests/support/sphere_capture.h"
 
 namespace beam {
@@ -61,8 +62,8 @@ TEST(TrackJoints, FollowsAMotionOfSeveralSpacings) {
   const GaussianCloud first = firstJoints(photographsAt(s, s.center), o);
   ASSERT_GT(glm::length(motion), 3 * meanSpacing(first.position_m));
   Progress progress;
-  const TrackedJoints t =
-      trackJoints(photographsAt(s, s.center + motion), {first, first, {}}, o, *makeCpuDevice(), progress);
+  const TrackedJoints t = trackJoints(photographsAt(s, s.center + motion), {poseOf(first), first, {}}, o,
+                                      *makeCpuDevice(), progress);
   ASSERT_EQ(t.joints.size(), first.size());
   EXPECT_EQ(t.joints.scale_m, first.scale_m);
   EXPECT_EQ(t.joints.opacity, first.opacity);
@@ -76,7 +77,7 @@ TEST(TrackJoints, StandsStillWithTheSubject) {
   const TrackJointsOptions o = quick();
   const GaussianCloud first = firstJoints(views, o);
   Progress progress;
-  const TrackedJoints t = trackJoints(views, {first, first, {}}, o, *makeCpuDevice(), progress);
+  const TrackedJoints t = trackJoints(views, {poseOf(first), first, {}}, o, *makeCpuDevice(), progress);
   EXPECT_LT(medianError(first, t.joints, vec3(0)), 0.011f);
 }
 
@@ -88,9 +89,9 @@ TEST(TrackJoints, GivesTheSameBitsForAnyNumberOfThreads) {
   const auto next = photographsAt(s, s.center + vec3(0.03f, 0, 0));
   Progress a, b;
   setThreadCount(1);
-  const TrackedJoints one = trackJoints(next, {first, first, {}}, o, *makeCpuDevice(), a);
+  const TrackedJoints one = trackJoints(next, {poseOf(first), first, {}}, o, *makeCpuDevice(), a);
   setThreadCount(2);
-  const TrackedJoints two = trackJoints(next, {first, first, {}}, o, *makeCpuDevice(), b);
+  const TrackedJoints two = trackJoints(next, {poseOf(first), first, {}}, o, *makeCpuDevice(), b);
   setThreadCount(0);
   EXPECT_EQ(one.joints.position_m, two.joints.position_m);
   EXPECT_EQ(one.joints.rotation, two.joints.rotation);
@@ -109,7 +110,7 @@ TEST(TrackJoints, StopsWhenAskedTo) {
   Progress progress(stop.get_token(), [&](const ProgressReport& r) {
     if (r.fraction > 0) stop.request_stop();
   });
-  EXPECT_THROW(trackJoints(views, {first, first, {}}, o, *makeCpuDevice(), progress), Cancelled);
+  EXPECT_THROW(trackJoints(views, {poseOf(first), first, {}}, o, *makeCpuDevice(), progress), Cancelled);
 }
 
 }  // namespace

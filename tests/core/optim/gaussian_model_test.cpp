@@ -164,6 +164,31 @@ TEST(GaussianModel, ShapeTermsHaveTheGradientOfTheirEnergies) {
   }
 }
 
+TEST(GaussianModel, TheTemporalTermHasTheGradientOfItsEnergyAndNoneAtTheReference) {
+  const GaussianCloud c = someCloud(6);
+  GaussianModel model(c);
+  model.keepReference();
+  const Regularizers steady{.temporal = 0.7f, .temporal_shape = 0.5f};
+  RecordingOps ops;
+  GaussianBuffers none(c.size());
+  model.activate();
+  model.step(none, {}, 3, steady, 1, ops);
+  for (int p = L::kScale; p < L::kExtra; ++p) EXPECT_EQ(ops.seen.plane(p)[2], 0) << p;
+  EXPECT_EQ(model.temporalEnergy(0.5f), 0);
+
+  GaussianCloud other = c;
+  other.color.of(2)[5] += 0.25f;
+  other.scale_m[2].y *= std::exp(0.5f);
+  model.takeAppearance(GaussianModel(other));
+  EXPECT_NEAR(model.temporalEnergy(0.5f), 0.25 * 0.25 + 0.5 * 0.5 * 0.5, 1e-5);
+  GaussianBuffers gradient(c.size());
+  model.activate();
+  model.step(gradient, {}, 3, steady, 2, ops);
+  EXPECT_NEAR(ops.seen.plane(L::kSh + 5)[2], 2 * 0.7 * 0.25, 1e-5);
+  EXPECT_NEAR(ops.seen.plane(L::kScale + 1)[2], 2 * 0.7 * 0.5 * 0.5, 1e-5);
+  EXPECT_EQ(ops.seen.plane(L::kSh + 5)[3], 0);
+}
+
 TEST(Relocation, OneCopyChangesNothing) {
   const Relocation r = relocation(0.5f, 1);
   EXPECT_NEAR(r.opacity, 0.5f, 1e-6f);

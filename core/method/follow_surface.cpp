@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/follow_surface.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "core/math/quaternion.h"
+#include "core/method/joint_warp.h"
+#include "core/method/track_joints.h"
+#include "core/optim/gaussian_model.h"
+#include "core/optim/rigid_energy.h"
+#include "core/optim/schedule.h"
+
+namespace beam {
+namespace {
+
+constexpr int kNeighbors = 8;   // of the binding and of the skin graph (methods 3.2, 3.4)
+constexpr double kReach = 1.8;  // length of their weights in mean spacings: 0.02 m of methods 3.2
+constexpr float kDecay = 0.1f;  // learning rates end at this share
+
+Anchors boundTo(const Pose& skin, const Pose& joints) {
+  return anchorTo(skin.position_m, joints.position_m, kNeighbors,
+                  static_cast<float>(kReach * meanSpacing(joints.position_m)));
+}
+
+Anchors graphOf(const Pose& skin) {
+  return neighborGraph(skin.position_m, kNeighbors,
+                       static_cast<float>(kReach * meanSpacing(skin.position_m)));
+}
+
+class SkinFollower {
+ public:
+  SkinFollower(std::span<const FrameView> views, const FollowInput& input, const CarriedSkin& start,
+               const FitSurfaceOptions& fit, const FollowSurfaceOptions& options, bool geometry,
+               ComputeDevice& device)
+      : fit_(fit),
+        options_(options),
+        geometry_(geometry),
+        loss_(views, lossOptions(fit), geometry, device),
+        model_(input.previous.cloud),
+        before_(poseOf(input.previous.cloud)),
+        reference_rest_(input.previous.rest_skin),
+        graph_(graphOf(reference_rest_)),
+        lists_(listsOf(graph_, reference_rest_.size())),
+        warp_(start.rest_skin, input.rest_joints, boundTo(reference_rest_, input.rest_joints)),
+        joints_(start.joints),
+        rest_(start.rest_skin),
+        extent_m_(sceneExtent(views)),
+        pixel_m_(pixelAtSubject(loss_.cameras(), start.joints.position_m)) {
+    takeFilterOut(model_);
+    model_.keepReference();
+    if (geometry) startFrom(start.cloud);
+  }
+
+  FollowedSkin run(int begin, int end, Progress& progress, const CloudPreview& preview) {
+    progress.expect(end - begin);
+    auto shown = std::chrono::steady_clock::now();
+    for (int step = begin; step < end; ++step) {
+      progress.step();
+      if ((step - begin) % kFilterEvery == 0) filterAtPose();
+      trainOnce(step, step - begin + 1);
+      const auto now = std::chrono::steady_clock::now();
+      if (preview && now - shown > std::chrono::seconds(1)) {
+        preview(std::make_shared<GaussianCloud>(model_.cloud()));
+        shown = now;
+      }
+    }
+    filterAtPose();
+    PoseGradient ignored(rest_.pose().size());
+    const Pose skin = warp_.skin(joints_.pose());
+    return {{model_.cloud(), rest_.pose(), joints_.pose()},
+            rigidEnergy(graph_, lists_, before_, skin, 0, ignored),
+            model_.temporalEnergy(Regularizers{}.temporal_shape)};
+  }
+
+ private:
+  static constexpr int kFilterEvery = 100;
+
+  void takeFilterOut(GaussianModel& model) const {
+    model.updateFilter(loss_.cameras(), static_cast<float>(fit_.filter));
+    model.unbakeFilter();
+  }
+
+  // The reference of E_temp stays that of the frame before.
+  void startFrom(const GaussianCloud& cloud) {
+    GaussianModel started(cloud);
+    takeFilterOut(started);
+    model_.takeAppearance(started);
+  }
+
+  void filterAtPose() {
+    model_.place(warp_.skin(joints_.pose()));
+    model_.updateFilter(loss_.cameras(), static_cast<float>(fit_.filter));
+  }
+
+  void trainOnce(int step, int adam_step) {
+    const Pose skin = warp_.skin(joints_.pose());
+    model_.place(skin);
+    model_.activate();
+    loss_.gradient(model_.physical(), step, 3, gradients_);
+    PoseGradient of_skin(skin.size()), of_joints(joints_.pose().size());
+    addPoseGradient(gradients_, of_skin);
+    rigidEnergy(graph_, lists_, before_, skin, static_cast<float>(options_.smooth_weight), of_skin);
+    warp_.backward(joints_.pose(), of_skin, of_joints);
+    const auto decay = static_cast<float>(logLinear(1, kDecay, step, options_.iterations));
+    if (geometry_ && options_.residual) moveRest(of_skin, decay, adam_step);
+    joints_.step(of_joints, static_cast<float>(options_.joint_rate * pixel_m_) * decay,
+                 static_cast<float>(options_.joint_rotation_rate) * decay, adam_step, loss_.ops());
+    model_.step(gradients_, rates(decay), 3, {.temporal = static_cast<float>(options_.temporal_weight)},
+                adam_step, loss_.ops());
+  }
+
+  void moveRest(const PoseGradient& of_skin, float decay, int adam_step) {
+    const Pose& rest = rest_.pose();
+    PoseGradient of_rest(rest.size());
+    warp_.backwardToRest(joints_.pose(), of_skin, of_rest);
+    const auto tie = static_cast<float>(2 * options_.residual_weight);
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      of_rest.position[i] += tie * (rest.position_m[i] - reference_rest_.position_m[i]);
+      of_rest.rotation[i] += tie * toVec4(rest.rotation[i] - reference_rest_.rotation[i]);
+    }
+    rest_.step(of_rest, static_cast<float>(options_.residual_rate) * extent_m_ * decay,
+               static_cast<float>(options_.residual_rotation_rate) * decay, adam_step, loss_.ops());
+    warp_.setRestSkin(rest_.pose());
+  }
+
+  LearningRates rates(float decay) const {
+    return {.position_m = 0,
+            .rotation = 0,
+            .log_scale = static_cast<float>(options_.scale_rate) * decay,
+            .opacity_logit = static_cast<float>(options_.opacity_rate) * decay,
+            .color_dc = static_cast<float>(options_.color_rate) * decay,
+            .color_rest = static_cast<float>(options_.color_rate) * decay / 2};
+  }
+
+  FitSurfaceOptions fit_;
+  FollowSurfaceOptions options_;
+  bool geometry_;
+  ViewLoss loss_;
+  GaussianModel model_;
+  Pose before_, reference_rest_;
+  Anchors graph_;
+  AnchorLists lists_;
+  JointWarp warp_;
+  PoseModel joints_, rest_;
+  float extent_m_;
+  double pixel_m_;
+  GaussianBuffers gradients_;
+};
+
+int refineStart(const FollowSurfaceOptions& o) {
+  return static_cast<int>(std::lround(o.iterations * (1 - o.refine_fraction)));
+}
+
+}  // namespace
+
+Pose carriedJoints(const Pose& tracked_before, const Pose& corrected_before, const Pose& tracked) {
+  Pose out = tracked;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const quat back = glm::conjugate(glm::normalize(tracked_before.rotation[k]));
+    const quat there = glm::normalize(tracked.rotation[k]);
+    const vec3 shift = back * (corrected_before.position_m[k] - tracked_before.position_m[k]);
+    out.position_m[k] += there * shift;
+    out.rotation[k] = glm::normalize(there * (back * corrected_before.rotation[k]));
+  }
+  return out;
+}
+
+FollowedSkin followAppearance(std::span<const FrameView> views, const FollowInput& input,
+                              const FitSurfaceOptions& fit, const FollowSurfaceOptions& options,
+                              ComputeDevice& device, Progress& progress, const CloudPreview& preview) {
+  const CarriedSkin start{input.previous.cloud, input.previous.rest_skin, input.joints};
+  return SkinFollower(views, input, start, fit, options, false, device)
+      .run(0, refineStart(options), progress, preview);
+}
+
+FollowedSkin followGeometry(std::span<const FrameView> views, const FollowInput& input,
+                            const CarriedSkin& start, const FitSurfaceOptions& fit,
+                            const FollowSurfaceOptions& options, ComputeDevice& device, Progress& progress,
+                            const CloudPreview& preview) {
+  return SkinFollower(views, input, start, fit, options, true, device)
+      .run(refineStart(options), options.iterations, progress, preview);
+}
+
+void describe(Fields& f, FollowSurfaceOptions& o) {
+  f.field({.name = "iterations",
+           .label = "Iterations, later frames",
+           .help = "Optimiser steps of a frame that follows another; the paper takes 7,000 + 5,000.",
+           .min = 2,
+           .max = 1e6},
+          o.iterations);
+  f.field({.name = "refine_fraction",
+           .label = "Share with normals",
+           .help = "Share of these steps that also follow E_normal, at the end.",
+           .min = 0,
+           .max = 1},
+          o.refine_fraction);
+  f.field({.name = "smooth_weight",
+           .label = "Smoothness",
+           .help = "lambda of E_smooth: neighbours on the skin move alike (BEAM 3.1: 0.001).",
+           .min = 0,
+           .max = 100},
+          o.smooth_weight);
+  f.field({.name = "temporal_weight",
+           .label = "Steadiness",
+           .help = "lambda of E_temp: appearance stays that of the frame before (BEAM 3.1: 5e-5).",
+           .min = 0,
+           .max = 100},
+          o.temporal_weight);
+  f.field(
+      {
+          .name = "residual",
+          .label = "Free the skin",
+          .help = "Lets each Gaussian leave its joints a little while E_normal acts; off is the paper's way.",
+      },
+      o.residual);
+  f.field({.name = "residual_weight",
+           .label = "Pull of the residual",
+           .help = "Ties what a Gaussian left its joints by to the frame before.",
+           .min = 0,
+           .max = 1e6,
+           .advanced = true},
+          o.residual_weight);
+  f.field({.name = "residual_rate",
+           .label = "Residual rate",
+           .help = "Learning rate of residual positions, times the scene extent.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.residual_rate);
+  f.field({.name = "residual_rotation_rate",
+           .label = "Residual rotation rate",
+           .help = "Learning rate of residual rotations, radians.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.residual_rotation_rate);
+  f.field({.name = "joint_rate",
+           .label = "Joint rate",
+           .help = "First learning rate of the joints' correction, in pixels; falls to a tenth.",
+           .min = 0,
+           .max = 10,
+           .advanced = true},
+          o.joint_rate);
+  f.field({.name = "joint_rotation_rate",
+           .label = "Joint rotation rate",
+           .help = "Likewise of their rotations, radians.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.joint_rotation_rate);
+  f.field({.name = "scale_rate",
+           .label = "Scale rate",
+           .help = "Learning rate of log scales in later frames.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.scale_rate);
+  f.field({.name = "opacity_rate",
+           .label = "Opacity rate",
+           .help = "Learning rate of opacity logits in later frames.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.opacity_rate);
+  f.field({.name = "color_rate",
+           .label = "Colour rate",
+           .help = "Learning rate of the first SH band in later frames; others half of it.",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.color_rate);
+}
+
+}  // namespace beam

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a set of Gaussians is and how it is turned, at one moment: of joints, or of skin.
+#pragma once
+
+#include <vector>
+
+#include "core/math/types.h"
+
+namespace beam {
+
+// Both arrays have size() entries.
+struct Pose {
+  std::vector<vec3> position_m;
+  std::vector<quat> rotation;  // world_from_gaussian; read as q / |q|
+
+  std::size_t size() const { return position_m.size(); }
+};
+
+}  // namespace beam
