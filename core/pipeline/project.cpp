@@ -220,8 +220,7 @@ void Project::save() {
     throw Error(Error::Kind::Storage,
                 fmt::format("cannot make the project folder \"{}\": {}", folder_.string(), failed.message()));
   }
-  const fs::path file = folder_ / kDocumentFile;
-  if (isProject(folder_) && readTextFile(file) == toJson(document_)) return;
+  if (isSaved(folder_, document_)) return;
   if (readOnly()) {
     throw Error(Error::Kind::Storage,
                 fmt::format("\"{}\" is read-only: the changed settings cannot be saved; make the "

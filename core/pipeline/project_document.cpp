@@ -39,6 +39,13 @@ void readCapture(const Json& j, ProjectDocument& document) {
   }
 }
 
+void readTakes(const Json& j, ProjectDocument& document) {
+  for (const Json& take : j) {
+    document.takes.push_back({take.at("first").get<std::string>(), take.at("last").get<std::string>(),
+                              take.at("step").get<int>()});
+  }
+}
+
 void checkFormat(const Json& j, std::string_view where) {
   const int major = j.at("format").at("major").get<int>();
   if (major > kMajor) {
@@ -71,6 +78,30 @@ FileLock lockProject(const fs::path& project) {
               fmt::format("\"{}\" is being written by another program ({}); try again when it is "
                           "done",
                           project.string(), FileLock::holderOf(project / "LOCK")));
+}
+
+// Whether the file says the same; afterwards `document` has its takes. A damaged file is to be replaced.
+bool sameOnDisk(const fs::path& file, ProjectDocument& document) {
+  std::error_code failed;
+  if (!fs::is_regular_file(file, failed)) return false;
+  const std::string text = readTextFile(file);
+  try {
+    document.takes = parseProjectDocument(text, file.string()).takes;
+  } catch (const Error&) {
+    return false;
+  }
+  return text == toJson(document);
+}
+
+void writeLocked(const fs::path& project, const ProjectDocument& document) {
+  const std::string text = toJson(document);
+  try {
+    fs::create_directories(project / "history");
+    writeFileAtomically(nextHistoryFile(project / "history"), text);
+  } catch (const fs::filesystem_error& e) {
+    throw Error(Error::Kind::Storage, e.what());
+  }
+  writeFileAtomically(project / "project.json", text);
 }
 
 }  // namespace
@@ -144,6 +175,9 @@ std::string toJson(const ProjectDocument& document) {
   for (const auto& [key, value] : document.settings) {
     std::visit([&, &k = key](const auto& v) { j["settings"][k] = v; }, value);
   }
+  for (const SavedTake& take : document.takes) {
+    j["takes"].push_back({{"first", take.first}, {"last", take.last}, {"step", take.step}});
+  }
   const Json unknown = Json::parse(document.unknown);
   for (const auto& [key, value] : unknown.items()) j[key] = value;
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -162,8 +196,9 @@ ProjectDocument parseProjectDocument(std::string_view json, std::string_view whe
     document.preset = j.at("preset").get<std::string>();
     for (const auto& [key, value] : j.at("settings").items())
       document.settings[key] = parseFieldValue(value.dump());
+    if (j.contains("takes")) readTakes(j["takes"], document);
     for (const char* known :
-         {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings"}) {
+         {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings", "takes"}) {
       j.erase(known);
     }
     document.unknown = j.dump();
@@ -176,16 +211,25 @@ ProjectDocument parseProjectDocument(std::string_view json, std::string_view whe
   }
 }
 
-void writeProjectDocument(const fs::path& project, const ProjectDocument& document) {
+bool isSaved(const fs::path& project, const ProjectDocument& document) {
+  ProjectDocument here = document;
+  return sameOnDisk(project / "project.json", here);
+}
+
+void writeProjectDocument(const fs::path& project, ProjectDocument& document) {
   const FileLock lock = lockProject(project);
-  const std::string text = toJson(document);
-  try {
-    fs::create_directories(project / "history");
-    writeFileAtomically(nextHistoryFile(project / "history"), text);
-  } catch (const fs::filesystem_error& e) {
-    throw Error(Error::Kind::Storage, e.what());
-  }
-  writeFileAtomically(project / "project.json", text);
+  if (!sameOnDisk(project / "project.json", document)) writeLocked(project, document);
+}
+
+std::vector<SavedTake> changeSavedTakes(const fs::path& project, const ChangeTakes& change) {
+  const fs::path file = project / "project.json";
+  const FileLock lock = lockProject(project);
+  ProjectDocument document = parseProjectDocument(readTextFile(file), file.string());
+  std::vector<SavedTake> changed = change(document.takes);
+  if (changed == document.takes) return changed;
+  document.takes = changed;
+  writeLocked(project, document);
+  return changed;
 }
 
 }  // namespace beam

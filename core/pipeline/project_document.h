@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "core/base/fields.h"
 #include "core/base/hash.h"
+#include "core/pipeline/takes.h"
 #include "core/scene/capture.h"
 
 namespace beam {
@@ -43,6 +45,7 @@ struct ProjectDocument {
   std::optional<UpAxis> up;
   std::string preset = "standard";
   std::map<std::string, FieldValue> settings;  // what differs from the preset
+  std::vector<SavedTake> takes;                // later ones win
   std::string unknown = "{}";                  // members of a later version, kept as they are (JSON)
 };
 
@@ -54,8 +57,15 @@ std::string toJson(const ProjectDocument& document);
 // Throws Error{Data} naming `where`; refuses a newer major format and says which program is needed.
 ProjectDocument parseProjectDocument(std::string_view json, std::string_view where);
 
-// Writes project.json of the folder and a copy into history/, keeping the last twenty. Takes LOCK for the
-// moment: Error{Locked} names its holder when it stays taken.
-void writeProjectDocument(const std::filesystem::path& project, const ProjectDocument& document);
+// Whether project.json says what `document` says, takes apart.
+bool isSaved(const std::filesystem::path& project, const ProjectDocument& document);
+// Makes project.json of the folder say what `document` says, with a copy in history/, which keeps the last
+// twenty. Takes are another matter: processes change them while others work, so those on disk hold and go
+// into `document`. Takes LOCK for the moment: Error{Locked} names its holder when it stays taken.
+void writeProjectDocument(const std::filesystem::path& project, ProjectDocument& document);
+// Changes the takes in project.json and nothing else of it, whatever another process wrote there meanwhile;
+// gives them as they are now. Writes only when they differ. Throws like writeProjectDocument.
+using ChangeTakes = std::function<std::vector<SavedTake>(const std::vector<SavedTake>&)>;
+std::vector<SavedTake> changeSavedTakes(const std::filesystem::path& project, const ChangeTakes& change);
 
 }  // namespace beam

@@ -111,6 +111,23 @@ TEST(ProjectFolder, MembersOfALaterVersionSurviveASave) {
   EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 77);
 }
 
+TEST(ProjectFolder, TakesOnDiskOutliveASaveOfTheSettingsOfAnother) {
+  FakeHouse house;
+  Project p = house.newProject();
+  const auto seen = changeSavedTakes(house.root() / "p.beam", [](const auto& takes) {
+    EXPECT_TRUE(takes.empty());
+    return std::vector<SavedTake>{{"000", "002", 2}};
+  });
+  EXPECT_EQ(seen, (std::vector<SavedTake>{{"000", "002", 2}}));
+  p.set("surface.iterations", 77);
+  p.save();
+  EXPECT_EQ(house.open().document().takes, seen);
+  EXPECT_EQ(p.document().takes, seen);
+  EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 77);
+  changeSavedTakes(house.root() / "p.beam", [](const auto& takes) { return takes; });
+  EXPECT_EQ(everythingIn(house.root() / "p.beam" / "history").size(), 3u) << "written when it differs only";
+}
+
 TEST(ProjectFolder, ANewerMajorFormatIsRefusedByName) {
   FakeHouse house;
   house.newProject();

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/takes.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace beam {
+namespace {
+
+// `last` a member, and one way only to write a take of one frame.
+Take normal(Take take) {
+  take.last.value -= (take.last.value - take.first.value) % take.step;
+  if (take.count() == 1) take.step = 1;
+  return take;
+}
+
+bool covers(const Take& outer, const Take& inner) {
+  if (!outer.holds(inner.first) || !outer.holds(inner.last)) return false;
+  return inner.count() == 1 || inner.step % outer.step == 0;
+}
+
+// By frame: the position of its owner, -1: none.
+std::vector<int> ownersOf(const std::vector<Take>& takes, int frames) {
+  std::vector<int> owners(static_cast<std::size_t>(frames), -1);
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    for (const FrameIndex f : takes[t].frames())
+      owners[static_cast<std::size_t>(f.value)] = static_cast<int>(t);
+  }
+  return owners;
+}
+
+// Those that can stay in a list over all frames.
+std::vector<Take> segmentsOf(const std::vector<Take>& takes, int frames) {
+  std::vector<Take> kept;
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    const Take& take = takes[t];
+    if (take.step != 1 || take.count() < 2 || take.first.value < 0 || take.last.value >= frames) continue;
+    bool inside = false;
+    for (std::size_t other = 0; other < takes.size() && !inside; ++other) {
+      const bool larger = takes[other].count() > take.count() || other > t;
+      inside = other != t && takes[other].step == 1 && larger && covers(takes[other], take);
+    }
+    if (!inside) kept.push_back(take);
+  }
+  const std::vector<int> owners = ownersOf(kept, frames);
+  std::vector<Take> owning;
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    if (std::find(owners.begin(), owners.end(), static_cast<int>(t)) != owners.end())
+      owning.push_back(kept[t]);
+  }
+  return owning;
+}
+
+// Takes for the unowned frames from `begin` to before `end`; `before`: the take that ends there, or null.
+void fillGap(std::vector<Take>& takes, int before, int begin, int end, int segment_frames) {
+  const auto room = [&](int length) {
+    return segment_frames == 0 ? end - begin : std::clamp(segment_frames - length, 0, end - begin);
+  };
+  if (before >= 0) {
+    Take& take = takes[static_cast<std::size_t>(before)];
+    const int grown = room(take.count());
+    take.last.value += grown;
+    begin += grown;
+  }
+  while (begin < end) {
+    const int length = room(0);
+    if (length > 1) takes.push_back({{begin}, {begin + length - 1}, 1});
+    begin += length;
+  }
+}
+
+}  // namespace
+
+bool Take::holds(FrameIndex frame) const {
+  return frame.value >= first.value && frame.value <= last.value && (frame.value - first.value) % step == 0;
+}
+
+std::optional<FrameIndex> Take::before(FrameIndex frame) const {
+  if (frame.value <= first.value) return std::nullopt;
+  return FrameIndex{frame.value - step};
+}
+
+std::vector<FrameIndex> Take::frames() const {
+  std::vector<FrameIndex> all;
+  for (std::int32_t f = first.value; f <= last.value; f += step) all.push_back({f});
+  return all;
+}
+
+std::vector<Take> readTakes(const std::vector<SavedTake>& saved, const std::vector<std::string>& frames) {
+  std::unordered_map<std::string, std::int32_t> at;
+  for (std::size_t i = 0; i < frames.size(); ++i) at.emplace(frames[i], static_cast<std::int32_t>(i));
+  std::vector<Take> takes;
+  for (const SavedTake& take : saved) {
+    const auto first = at.find(take.first), last = at.find(take.last);
+    if (first == at.end() || last == at.end() || last->second < first->second || take.step < 1) continue;
+    takes.push_back(normal({{first->second}, {last->second}, take.step}));
+  }
+  return takes;
+}
+
+std::vector<SavedTake> saveTakes(const std::vector<Take>& takes, const std::vector<std::string>& frames) {
+  const auto name = [&](FrameIndex f) { return frames.at(static_cast<std::size_t>(f.value)); };
+  std::vector<SavedTake> saved;
+  saved.reserve(takes.size());
+  for (const Take& take : takes) saved.push_back({name(take.first), name(take.last), take.step});
+  return saved;
+}
+
+Take takeOf(const std::vector<Take>& takes, FrameIndex frame) {
+  const auto owner =
+      std::find_if(takes.rbegin(), takes.rend(), [&](const Take& t) { return t.holds(frame); });
+  return owner == takes.rend() ? Take{frame, frame, 1} : *owner;
+}
+
+std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every) {
+  std::vector<Take> takes;
+  for (std::size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+    while (end < frames.size() && frames[end].value - frames[begin].value == static_cast<int>(end - begin))
+      ++end;
+    takes.push_back(normal({frames[begin], frames[end - 1], std::max(every, 1)}));
+  }
+  return takes;
+}
+
+std::vector<Take> addTake(std::vector<Take> takes, const Take& wanted) {
+  const Take take = normal(wanted);
+  const std::vector<FrameIndex> members = take.frames();
+  if (std::all_of(members.begin(), members.end(), [&](FrameIndex f) { return takeOf(takes, f) == take; }))
+    return takes;
+  std::erase_if(takes, [&](const Take& older) { return covers(take, older); });
+  takes.push_back(take);
+  return takes;
+}
+
+std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_frames) {
+  takes = segmentsOf(takes, frames);
+  const std::vector<int> owners = ownersOf(takes, frames);
+  for (int begin = 0; begin < frames; ++begin) {
+    if (owners[static_cast<std::size_t>(begin)] >= 0) continue;
+    int end = begin;
+    while (end < frames && owners[static_cast<std::size_t>(end)] < 0) ++end;
+    fillGap(takes, begin > 0 ? owners[static_cast<std::size_t>(begin) - 1] : -1, begin, end, segment_frames);
+    begin = end;
+  }
+  return takes;
+}
+
+std::vector<Take> splitTake(std::vector<Take> takes, FrameIndex frame) {
+  const auto owner =
+      std::find_if(takes.rbegin(), takes.rend(), [&](const Take& t) { return t.holds(frame); });
+  if (owner == takes.rend() || owner->first == frame) return takes;
+  const auto at = owner.base() - 1;
+  const Take rest = normal({frame, at->last, at->step});
+  *at = normal({at->first, *at->before(frame), at->step});
+  takes.insert(at + 1, rest);
+  return takes;
+}
+
+}  // namespace beam

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/takes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace beam::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using Takes = std::vector<Take>;
+
+Take take(int first, int last, int step = 1) { return {{first}, {last}, step}; }
+
+std::vector<FrameIndex> framesOf(std::initializer_list<int> numbers) {
+  std::vector<FrameIndex> frames;
+  for (const int n : numbers) frames.push_back({n});
+  return frames;
+}
+
+TEST(Takes, TheLastTakeThatHoldsAFrameOwnsIt) {
+  const Takes takes = {take(0, 9), take(4, 6), take(0, 8, 4)};
+  EXPECT_EQ(takeOf(takes, {3}), take(0, 9));
+  EXPECT_EQ(takeOf(takes, {5}), take(4, 6));
+  EXPECT_EQ(takeOf(takes, {4}), take(0, 8, 4));
+  EXPECT_EQ(takeOf(takes, {12}), take(12, 12));
+}
+
+TEST(Takes, TheFrameBeforeIsOneStrideAwayAndTheFirstHasNone) {
+  EXPECT_EQ(take(2, 10, 4).before({6}), FrameIndex{2});
+  EXPECT_FALSE(take(2, 10, 4).before({2}));
+  EXPECT_EQ(take(2, 10, 4).count(), 3);
+}
+
+TEST(Takes, NamedFramesMakeATakeOfEachConsecutiveRun) {
+  EXPECT_THAT(takesOfFrames(framesOf({0, 1, 2, 5, 8, 9}), 1),
+              ElementsAre(take(0, 2), take(5, 5), take(8, 9)));
+  EXPECT_THAT(takesOfFrames(framesOf({0, 1, 2, 3, 4, 5, 9}), 2), ElementsAre(take(0, 4, 2), take(9, 9)));
+  EXPECT_THAT(takesOfFrames({}, 1), IsEmpty());
+}
+
+TEST(Takes, ANamedTakeGoesToTheEndAndDropsWhatItCovers) {
+  EXPECT_EQ(addTake({take(0, 2), take(5, 5), take(2, 6)}, take(0, 5)), (Takes{take(2, 6), take(0, 5)}));
+  EXPECT_EQ(addTake({take(0, 9)}, take(5, 5)), (Takes{take(0, 9), take(5, 5)}));
+  EXPECT_EQ(addTake({take(0, 9), take(5, 5)}, take(0, 9)), (Takes{take(0, 9)}));
+  EXPECT_EQ(addTake({take(0, 8, 4), take(4, 4), take(0, 4)}, take(0, 9, 2)),
+            (Takes{take(0, 4), take(0, 8, 2)}));
+}
+
+TEST(Takes, AskingAgainForTheOwnerChangesNothing) {
+  const Takes takes = {take(0, 4), take(6, 9)};
+  EXPECT_EQ(addTake(takes, take(0, 4)), takes);
+  EXPECT_EQ(addTake(takes, take(5, 5)), takes) << "a frame in no take is a take of its own";
+}
+
+TEST(Takes, AWholeRunCutsNewStretchesIntoSegments) {
+  EXPECT_EQ(joinTakes({}, 120, 50), (Takes{take(0, 49), take(50, 99), take(100, 119)}));
+  EXPECT_EQ(joinTakes({}, 120, 0), (Takes{take(0, 119)}));
+  EXPECT_EQ(joinTakes({}, 51, 50), (Takes{take(0, 49)})) << "the last one stands alone";
+  EXPECT_THAT(joinTakes({}, 1, 50), IsEmpty());
+  EXPECT_THAT(joinTakes({}, 9, 1), IsEmpty());
+}
+
+TEST(Takes, AWholeRunKeepsSegmentsAndLengthensTheOneBeforeAGap) {
+  EXPECT_EQ(joinTakes({take(0, 24), take(60, 69)}, 100, 50),
+            (Takes{take(0, 49), take(60, 99), take(50, 59)}));
+  EXPECT_EQ(joinTakes({take(10, 14)}, 20, 50), (Takes{take(10, 19), take(0, 9)}));
+  EXPECT_EQ(joinTakes({take(0, 79)}, 100, 50), (Takes{take(0, 79), take(80, 99)})) << "long ones stay";
+  EXPECT_EQ(joinTakes({take(0, 4)}, 10, 0), (Takes{take(0, 9)}));
+}
+
+TEST(Takes, AWholeRunDropsLoneInnerAndScoutTakes) {
+  EXPECT_EQ(joinTakes({take(0, 9), take(3, 3), take(4, 6), take(0, 8, 4)}, 10, 50), (Takes{take(0, 9)}));
+  EXPECT_EQ(joinTakes({take(4, 6), take(0, 9), take(0, 9)}, 10, 50), (Takes{take(0, 9)}));
+  EXPECT_EQ(joinTakes({take(2, 5), take(0, 3), take(3, 6)}, 7, 50), (Takes{take(0, 3), take(3, 6)}))
+      << "one that owns no frame any more";
+}
+
+TEST(Takes, JoiningTwiceIsJoiningOnce) {
+  for (const Takes& list : {Takes{}, Takes{take(7, 7)}, Takes{take(5, 14), take(0, 9)}, Takes{take(3, 30)}}) {
+    for (const int segment : {0, 7, 50}) {
+      const Takes once = joinTakes(list, 60, segment);
+      EXPECT_EQ(joinTakes(once, 60, segment), once);
+    }
+  }
+}
+
+TEST(Takes, ASplitMakesTheFrameAFirstOne) {
+  EXPECT_EQ(splitTake({take(0, 9), take(20, 29)}, {4}), (Takes{take(0, 3), take(4, 9), take(20, 29)}));
+  EXPECT_EQ(splitTake({take(0, 8, 4)}, {8}), (Takes{take(0, 4, 4), take(8, 8)}));
+  EXPECT_EQ(splitTake({take(0, 9)}, {0}), (Takes{take(0, 9)}));
+  EXPECT_EQ(splitTake({take(0, 9)}, {12}), (Takes{take(0, 9)}));
+}
+
+TEST(Takes, AreKeptByTheNamesOfTheirFrames) {
+  const std::vector<std::string> frames = {"f02", "f04", "f06", "f08"};
+  const Takes takes = {take(0, 3), take(1, 3, 2)};
+  const std::vector<SavedTake> saved = saveTakes(takes, frames);
+  EXPECT_EQ(saved, (std::vector<SavedTake>{{"f02", "f08", 1}, {"f04", "f08", 2}}));
+  EXPECT_EQ(readTakes(saved, frames), takes);
+  EXPECT_THAT(readTakes({{"f02", "f99", 1}, {"f08", "f02", 1}, {"f02", "f08", 0}}, frames), IsEmpty());
+}
+
+}  // namespace
+}  // namespace beam::testing
