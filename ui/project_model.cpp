@@ -43,6 +43,8 @@ StepState stateOf(CellState cell) {
       return StepState::Failed;
     case CellState::Blocked:
       return StepState::Blocked;
+    case CellState::NotNeeded:
+      return StepState::NotNeeded;
     case CellState::Empty:
     case CellState::Stale:
       break;

@@ -69,6 +69,8 @@ QString StageRail::stateText(const StageStatus& stage) const {
       return "failed" + share;
     case StepState::Blocked:
       return "needs a panorama";
+    case StepState::NotNeeded:
+      return stage.done > 0 ? "not needed here," + share : QString("not needed");
     case StepState::Pending:
       if (stage.stale) return "stale" + share;
       return stage.done > 0 ? "not here," + share : QString("to do");

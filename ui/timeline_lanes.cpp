@@ -79,6 +79,8 @@ LaneShade shadeOf(const TakeSurvey& survey, std::size_t lane, int frame, const R
       return LaneShade::Blocked;
     case CellState::Stale:
       return in_run && before_end ? LaneShade::Queued : LaneShade::Stale;
+    case CellState::NotNeeded:
+      return LaneShade::Empty;
     case CellState::Empty:
       break;
   }

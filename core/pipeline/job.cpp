@@ -192,16 +192,16 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
       device_,
       progress,
       [this](std::shared_ptr<const GaussianCloud> cloud) { preview_.publish(std::move(cloud)); },
-      {}};
-  for (const std::string& input : info.inputs) {
-    const std::optional<std::filesystem::path> found = project_.result(input, frame);
-    if (!found) {
-      throw Error(Error::Kind::Data,
-                  fmt::format("the result of {} that {} needs is gone; run again to compute it anew", input,
-                              ref.step));
-    }
-    context.inputs[input] = *found;
+  };
+  const std::map<std::string, Digest>& upstream = record.ingredients.upstream;
+  for (const auto& [name, key] : upstream) {
+    if (!name.starts_with(previousName(""))) context.inputs[name] = resultOf(name, key, ref);
   }
+  for (const std::string& step : info.later.previous) {
+    if (const auto key = upstream.find(previousName(step)); key != upstream.end())
+      context.previous[step] = resultOf(key->first, key->second, ref);
+  }
+  context.is_later = record.ingredients.later;
   project_.makeStage(stageOf(ref.step))->run(info.id, context);
   record.program_version = kProgramVersion;
   record.device = device_.info().title;
@@ -211,6 +211,13 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
   record.scores = context.scores;
   std::lock_guard lock(warnings_mutex_);
   record.warnings = warnings_;
+}
+
+std::filesystem::path Job::resultOf(const std::string& step, const Digest& key, const StepRef& reader) const {
+  if (std::optional<std::filesystem::path> found = project_.store().verified(key)) return *found;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("the result of {} that {} needs is gone; run again to compute it anew", step, reader.step));
 }
 
 // A result made while its input changed would sit under a key that promises something else.

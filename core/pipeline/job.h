@@ -42,6 +42,7 @@ class Job {
   Ended runStep(const std::string& step, std::optional<FrameIndex> frame);
   void compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
   void build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record);
+  std::filesystem::path resultOf(const std::string& step, const Digest& key, const StepRef& reader) const;
   void checkInputs(const StepRef& ref, const KeyIngredients& before) const;
   void failFrame(const StepRef& ref, const std::string& message);
   void acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds);

@@ -37,12 +37,6 @@ bool isFree(const fs::path& folder) {
   return !failed;
 }
 
-std::vector<Field> fieldsOfStage(Stage& stage) {
-  FieldList list;
-  stage.parameters(list);
-  return std::move(list.fields);
-}
-
 }  // namespace
 
 bool Project::isProject(const fs::path& folder) {
@@ -126,7 +120,7 @@ std::unique_ptr<Stage> Project::makeStage(std::string_view stage) const {
 std::vector<Field> Project::fields() const {
   std::vector<Field> all;
   for (const StageInfo& info : setup_->stages.infos()) {
-    for (Field& field : fieldsOfStage(*makeStage(info.id))) {
+    for (Field& field : fieldsOf(*makeStage(info.id))) {
       field.info.name = info.id + "." + field.info.name;
       all.push_back(std::move(field));
     }
@@ -163,6 +157,7 @@ void Project::set(std::string_view key, const FieldValue& wanted) {
   stage->parameters(list);
   for (const Field& field : list.fields) {
     if (field.info.name != stepOf(key)) continue;
+    memo_.clear();
     if (field.value == preset_value) {
       document_.settings.erase(std::string(key));
     } else {
@@ -171,7 +166,10 @@ void Project::set(std::string_view key, const FieldValue& wanted) {
   }
 }
 
-void Project::reset(std::string_view key) { document_.settings.erase(std::string(key)); }
+void Project::reset(std::string_view key) {
+  document_.settings.erase(std::string(key));
+  memo_.clear();
+}
 
 void Project::setPreset(const std::string& name) {
   const std::string before = std::exchange(document_.preset, name);
@@ -181,6 +179,7 @@ void Project::setPreset(const std::string& name) {
     document_.preset = before;
     throw;
   }
+  memo_.clear();
   // What the new preset says anyway no longer differs.
   for (const auto& [key, value] : std::map(document_.settings)) set(key, value);
 }
@@ -199,6 +198,7 @@ void Project::setEnvironment(const std::optional<fs::path>& file) {
   } else {
     document_.environment.reset();
   }
+  memo_.clear();
 }
 
 void Project::setHoldOut(std::vector<std::string> hold_out) {
@@ -211,7 +211,10 @@ void Project::setUp(std::optional<UpAxis> up) {
   forgetCapture();
 }
 
-void Project::forgetCapture() { imported_.reset(); }
+void Project::forgetCapture() {
+  imported_.reset();
+  memo_.clear();
+}
 
 void Project::save() {
   std::error_code failed;
@@ -228,6 +231,7 @@ void Project::save() {
                             folder_.string()));
   }
   writeProjectDocument(folder_, document_);
+  memo_.clear();  // takes may have come from disk
 }
 
 // --- Capture ---
@@ -269,92 +273,6 @@ std::optional<fs::path> Project::environmentFile() const {
       fmt::format("the panorama of \"{}\" is gone: expected it at \"{}\"; put it back or name another with "
                   "--environment",
                   folder_.string(), document_.environment->absolute));
-}
-
-// --- Steps ---
-
-std::string Project::blockedReason(std::string_view stage) const {
-  const auto needsEnvironment = [&](const auto& self, const std::string& id) -> bool {
-    const StepInfo& step = setup_->stages.step(id);
-    const bool reads =
-        std::find(step.reads.begin(), step.reads.end(), Reads::Environment) != step.reads.end();
-    return reads ||
-           std::any_of(step.inputs.begin(), step.inputs.end(), [&](const auto& i) { return self(self, i); });
-  };
-  const StageInfo& info = setup_->stages.info(stage);
-  for (const StepInfo& step : info.steps) {
-    if (!needsEnvironment(needsEnvironment, info.id + "." + step.id)) continue;
-    if (environmentFile()) return {};
-    return fmt::format(
-        "{} needs a panorama of the light, which the capture does not have: give one with --environment "
-        "FILE (.exr or .hdr, latitude-longitude)",
-        info.title);
-  }
-  return {};
-}
-
-KeyIngredients Project::ingredients(std::string_view step, FrameIndex frame) const {
-  const StepInfo& info = setup_->stages.step(step);
-  KeyIngredients key{std::string(step), info.version, {}, {}, {}};
-  const std::string stage = stageOf(step);
-  const std::vector<Field> defaults = fieldsOfStage(*setup_->stages.make(stage));
-  const std::vector<Field> in_force = fieldsOfStage(*makeStage(stage));
-  for (std::size_t i = 0; i < in_force.size(); ++i) {
-    if (in_force[i].value == defaults[i].value || !entersKey(in_force[i].info, info.id)) continue;
-    key.parameters[stage + "." + in_force[i].info.name] = toText(in_force[i].value);
-  }
-  for (const Reads reads : info.reads) {
-    switch (reads) {
-      case Reads::Calibration:
-        key.inputs["calibration"] = inputs_->calibration(capture());
-        break;
-      case Reads::Pictures:
-        key.inputs["pictures"] = inputs_->pictures(capture(), frame, Split::Train);
-        break;
-      case Reads::HeldOut:
-        key.inputs["held_out"] = inputs_->pictures(capture(), frame, Split::Test);
-        break;
-      case Reads::Environment:
-        if (const auto file = environmentFile()) key.inputs["environment"] = inputs_->file(*file);
-        break;
-    }
-  }
-  for (const std::string& input : info.inputs) key.upstream[input] = this->key(input, frame);
-  return key;
-}
-
-Digest Project::key(std::string_view step, FrameIndex frame) const { return keyOf(ingredients(step, frame)); }
-
-StepState Project::state(std::string_view step, FrameIndex frame) const {
-  if (!blockedReason(stageOf(step)).empty()) return StepState::Blocked;
-  const Digest digest = key(step, frame);
-  if (store_->has(digest)) return StepState::Done;
-  if (store_->isLeased(digest)) return StepState::Running;
-  return store_->failure(digest) ? StepState::Failed : StepState::Pending;
-}
-
-StepState Project::stageState(std::string_view stage, FrameIndex frame) const {
-  const StageInfo& info = setup_->stages.info(stage);
-  for (const StepInfo& step : info.steps) {
-    const StepState found = state(info.id + "." + step.id, frame);
-    if (found != StepState::Done) return found;
-  }
-  return StepState::Done;
-}
-
-std::string Project::failureOf(std::string_view step, FrameIndex frame) const {
-  const std::optional<FailureNote> note = store_->failure(key(step, frame));
-  return note ? note->message : std::string();
-}
-
-std::optional<fs::path> Project::result(std::string_view step, FrameIndex frame) const {
-  if (!blockedReason(stageOf(step)).empty()) return std::nullopt;
-  return store_->verified(key(step, frame));
-}
-
-std::optional<ResultRecord> Project::record(std::string_view step, FrameIndex frame) const {
-  if (!blockedReason(stageOf(step)).empty()) return std::nullopt;
-  return store_->record(key(step, frame));
 }
 
 const InputDigests& Project::inputs() const { return *inputs_; }

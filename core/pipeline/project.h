@@ -16,6 +16,7 @@
 #include "core/base/hash.h"
 #include "core/io/capture_reader.h"
 #include "core/pipeline/input_digests.h"
+#include "core/pipeline/key_memo.h"
 #include "core/pipeline/project_document.h"
 #include "core/pipeline/result_key.h"
 #include "core/pipeline/result_store.h"
@@ -36,7 +37,8 @@ enum class StepState {
   Running,  // some process holds its lease
   Failed,   // the last attempt did; failureOf tells why
   Done,
-  Blocked,  // needs something the project does not have (a panorama)
+  Blocked,    // needs something the project does not have (a panorama)
+  NotNeeded,  // the step is not for this frame of its take
 };
 
 class Project {
@@ -82,13 +84,30 @@ class Project {
   // The panorama in force: the project's own, else the capture's.
   std::optional<std::filesystem::path> environmentFile() const;
 
+  // --- Takes: which frames build on the frame before. ---
+  std::vector<Take> takes() const;
+  Take takeOf(FrameIndex frame) const;
+  // Changes what other processes left in project.json, at once, and has the same here. A project that is
+  // read-only or not on disk yet changes here alone. Throws Error{Locked} or Error{Storage}.
+  void changeTakes(const std::function<std::vector<Take>(std::vector<Take>)>& change);
+  // Makes `frame` the first of its take, likewise; further changes by others do not reach this project.
+  void splitTake(FrameIndex frame);
+  // Those that are in project.json now; a project that is read-only or not on disk keeps its own.
+  void readTakesAgain();
+  void adoptTakes(const Project& other);
+
   // --- Steps. `step` is a full id; `frame` is ignored for steps that serve the whole project. ---
   // Why a stage cannot run ("" when it can): "needs a panorama: ...".
   std::string blockedReason(std::string_view stage) const;
+  // False: the step is not for this frame of its take; it has no key and no result.
+  bool applies(std::string_view step, FrameIndex frame) const;
+  // The user's files that the step reads itself are looked at each time; keys of what it builds on are kept
+  // until settings or takes change, or forgetKeys(): every frame's key holds that of the frame before.
   KeyIngredients ingredients(std::string_view step, FrameIndex frame) const;
   Digest key(std::string_view step, FrameIndex frame) const;
+  void forgetKeys() const { memo_.clear(); }
   StepState state(std::string_view step, FrameIndex frame) const;
-  // Of a whole stage for a frame: the least finished of its steps.
+  // Of a whole stage for a frame: the least finished of its steps that are for it; Done when there are none.
   StepState stageState(std::string_view stage, FrameIndex frame) const;
   std::string failureOf(std::string_view step, FrameIndex frame) const;  // message; empty: none
   // Folder of the finished result, every byte verified (once a process and version of the file); empty when
@@ -105,6 +124,12 @@ class Project {
   Project(std::filesystem::path folder, ProjectDocument document, std::shared_ptr<const PipelineSetup> setup);
   void forgetCapture();
   const std::map<std::string, FieldValue>& preset() const;
+  bool savesTakes() const;
+  KeyIngredients ingredientsAt(const std::string& step, const Take& take, FrameIndex frame) const;
+  Digest keyAt(const std::string& step, const Take& take, FrameIndex frame) const;
+  void keepKeysBefore(const std::string& step, const Take& take, FrameIndex frame) const;
+  const std::map<std::string, std::string>& parametersOf(const std::string& step, bool later) const;
+  const std::vector<std::string>& chainOf(const std::string& step) const;
 
   std::filesystem::path folder_;
   ProjectDocument document_;
@@ -114,6 +139,7 @@ class Project {
   mutable std::string preset_loaded_;
   mutable std::shared_ptr<const ImportedCapture> imported_;
   mutable std::shared_ptr<const InputDigests> inputs_;
+  mutable KeyMemo memo_;
 };
 
 }  // namespace beam

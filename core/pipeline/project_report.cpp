@@ -62,7 +62,8 @@ std::string stepText(const Project& project, const std::string& id, const StepIn
   std::string text;
   for (const auto& [state, names] : by_state) {
     const bool all = by_state.size() == 1;
-    const bool counted = all || state == StepState::Pending || names.size() > 12;
+    const bool few_words = state == StepState::Pending || state == StepState::NotNeeded;
+    const bool counted = all || few_words || names.size() > 12;
     text += fmt::format("{}{} {}", text.empty() ? "" : "; ", toText(state),
                         all       ? std::string("(all frames)")
                         : counted ? fmt::format("({} frames)", names.size())
@@ -90,7 +91,8 @@ Json stepJson(const Project& project, const std::string& id, const StepInfo& ste
   j["frames"] = Json::object();
   for (const FrameIndex frame : framesOf(project, step)) {
     const StepState state = project.state(id, frame);
-    Json f = {{"state", toText(state)}, {"key", project.key(id, frame).hex()}};
+    Json f = {{"state", toText(state)}};
+    if (state != StepState::NotNeeded) f["key"] = project.key(id, frame).hex();
     if (state == StepState::Failed) f["message"] = project.failureOf(id, frame);
     if (state == StepState::Done) {
       if (const auto record = project.record(id, frame)) f["seconds"] = record->seconds;
@@ -114,6 +116,8 @@ const char* toText(StepState state) {
       return "done";
     case StepState::Blocked:
       return "blocked";
+    case StepState::NotNeeded:
+      return "not needed";
   }
   return "";
 }

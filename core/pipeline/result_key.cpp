@@ -7,6 +7,7 @@ namespace beam {
 
 std::string canonicalText(const KeyIngredients& ingredients) {
   std::string text = fmt::format("step {}\nversion {}\n", ingredients.step, ingredients.version);
+  if (ingredients.later) text += "later\n";
   // Values may be any text: their length keeps two different lists from reading alike.
   for (const auto& [name, value] : ingredients.parameters) {
     text += fmt::format("parameter {} {}:{}\n", name, value.size(), value);
@@ -19,10 +20,14 @@ std::string canonicalText(const KeyIngredients& ingredients) {
 
 Digest keyOf(const KeyIngredients& ingredients) { return digestOf(canonicalText(ingredients)); }
 
-bool entersKey(const FieldInfo& field, std::string_view step) {
+std::string previousName(std::string_view step) { return fmt::format("previous {}", step); }
+
+bool entersKey(const FieldInfo& field, std::string_view step, bool later) {
   if (field.effect != Effect::Result) return false;
   const std::size_t dot = field.name.find('.');
-  return dot == std::string::npos || std::string_view(field.name).substr(0, dot) == step;
+  if (dot == std::string::npos) return true;
+  const std::string_view group = std::string_view(field.name).substr(0, dot);
+  return group == step || (later && group == "later");
 }
 
 }  // namespace beam

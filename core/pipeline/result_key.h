@@ -19,15 +19,19 @@ struct KeyIngredients {
   std::map<std::string, std::string>
       parameters;                          // full name -> value; only those that differ from the default
   std::map<std::string, Digest> inputs;    // "calibration", "pictures", "environment"
-  std::map<std::string, Digest> upstream;  // full step id -> key of its result
+  std::map<std::string, Digest> upstream;  // full step id -> key of its result; see previousName()
+  bool later = false;                      // builds on the frame before
 };
+
+// How `upstream` calls the result of a step in the frame before: "previous surface.refine".
+std::string previousName(std::string_view step);
 
 // One line a fact, sorted; equal on every machine.
 std::string canonicalText(const KeyIngredients& ingredients);
 Digest keyOf(const KeyIngredients& ingredients);
 
 // Whether a stage's field (name without the stage id) has a say in a step: result fields that are ungrouped
-// or in the group named after the step.
-bool entersKey(const FieldInfo& field, std::string_view step);
+// or in the group named after the step; of a later frame also those in the group "later".
+bool entersKey(const FieldInfo& field, std::string_view step, bool later = false);
 
 }  // namespace beam

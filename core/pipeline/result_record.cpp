@@ -44,6 +44,7 @@ std::string toJson(const ResultRecord& r) {
   j["parameters"] = r.ingredients.parameters;
   j["inputs"] = digests(r.ingredients.inputs);
   j["upstream"] = digests(r.ingredients.upstream);
+  if (r.ingredients.later) j["later"] = true;
   j["frame"] = r.frame;
   j["files"] = Json::object();
   for (const auto& [name, entry] : r.files) {
@@ -68,6 +69,7 @@ ResultRecord parseResultRecord(std::string_view json) {
     r.ingredients.parameters = j.at("parameters").get<std::map<std::string, std::string>>();
     r.ingredients.inputs = parseDigests(j.at("inputs"));
     r.ingredients.upstream = parseDigests(j.at("upstream"));
+    r.ingredients.later = j.value("later", false);
     r.frame = j.at("frame").get<std::string>();
     for (const auto& [name, entry] : j.at("files").items()) {
       r.files[name] = {entry.at("bytes").get<std::uint64_t>(),

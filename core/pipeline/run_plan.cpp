@@ -8,15 +8,8 @@
 namespace beam {
 namespace {
 
-using Steps = std::set<std::string>;
-
-void addWithInputs(const StageRegistry& stages, const std::string& step, Steps& chosen) {
-  if (!chosen.insert(step).second) return;
-  for (const std::string& input : stages.step(step).inputs) addWithInputs(stages, input, chosen);
-}
-
-void addStage(const StageRegistry& stages, const StageInfo& info, Steps& chosen) {
-  for (const StepInfo& step : info.steps) addWithInputs(stages, info.id + "." + step.id, chosen);
+void addStage(const StageRegistry& stages, const StageInfo& info, std::set<std::string>& chosen) {
+  for (const StepInfo& step : info.steps) stages.addWithReads(info.id + "." + step.id, chosen);
 }
 
 }  // namespace
@@ -24,7 +17,7 @@ void addStage(const StageRegistry& stages, const StageInfo& info, Steps& chosen)
 RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
   const StageRegistry& stages = project.setup().stages;
   RunPlan plan;
-  Steps chosen;
+  std::set<std::string> chosen;
   if (!request.stage.empty()) {
     const StageInfo& info = stages.info(request.stage);
     if (const std::string why = project.blockedReason(info.id); !why.empty())

@@ -14,6 +14,7 @@
 
 #include "core/base/fields.h"
 #include "core/base/progress.h"
+#include "core/pipeline/takes.h"
 #include "core/scene/capture.h"
 #include "core/scene/gaussian_cloud.h"
 
@@ -29,6 +30,20 @@ enum class Reads {
   Environment,  // the panorama
 };
 
+// Which frames of a take a per-frame step is for.
+enum class Frames {
+  Every,
+  FirstOfTake,
+  InTakes,  // every frame of takes of two and more
+};
+
+// What a later frame of a take (not its first) reads besides: results of the same frame, and of the frame
+// before. Its key has the parameters of the group "later", too.
+struct Later {
+  std::vector<std::string> inputs = {}, previous = {};  // full ids; `previous` may stand anywhere
+  bool empty() const { return inputs.empty() && previous.empty(); }
+};
+
 struct StepInfo {
   std::string id;           // inside its stage: "fit"; the full id is "surface.fit". Never renamed
   std::string title;        // "Fit appearance"
@@ -36,9 +51,18 @@ struct StepInfo {
   int version = 1;          // raise when equal inputs would now give another result
   bool per_frame = true;
   std::vector<Reads> reads = {};
-  std::vector<std::string> inputs = {};  // full ids of the steps whose results it reads; all stand earlier
-  double weight = 1;                     // usual share of time, for the remaining time of a run
+  // Full ids of the steps whose results it reads; all stand earlier. One that is not for the frame is left
+  // out.
+  std::vector<std::string> inputs = {};
+  double weight = 1;  // usual share of time, for the remaining time of a run
+  Frames frames = Frames::Every;
+  Later later = {};
 };
+
+// Whether the step is for this frame of the take.
+bool applies(const StepInfo& step, const Take& take, FrameIndex frame);
+// Everything it reads in any frame: inputs, later ones, those of the frame before.
+std::vector<std::string> readsOf(const StepInfo& step);
 
 struct StageInfo {
   std::string id;  // "surface"
@@ -57,9 +81,19 @@ struct StepContext {
   ComputeDevice& device;
   Progress& progress;
   std::function<void(std::shared_ptr<const GaussianCloud>)> preview;
-  std::map<std::string, double> scores;  // figures for the record: counts, losses
+  std::map<std::string, double> scores = {};  // figures for the record: counts, losses
+  // Of a later frame: full step id -> folder of the result of the frame before, verified.
+  std::map<std::string, std::filesystem::path> previous = {};
+  bool is_later = false;
 
   const std::filesystem::path& input(const std::string& step) const { return inputs.at(step); }
+  // Whether the step builds on the frame before; never for the first of a take.
+  bool later() const { return is_later; }
+  // Null: there is none, because the step is not for that frame, or this one is no later frame.
+  const std::filesystem::path* previousResult(const std::string& step) const {
+    const auto found = previous.find(step);
+    return found == previous.end() ? nullptr : &found->second;
+  }
 };
 
 class Stage {
@@ -71,6 +105,9 @@ class Stage {
   // `step`: an id of info().steps.
   virtual void run(std::string_view step, StepContext& context) const = 0;
 };
+
+// Its parameters with the values they have.
+std::vector<Field> fieldsOf(Stage& stage);
 
 template <class Options>
 class StageOf : public Stage {

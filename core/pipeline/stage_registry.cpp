@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "core/base/error.h"
 
@@ -26,10 +25,12 @@ void StageRegistry::add(Maker maker) {
     for (const StepInfo& step : earlier.steps) known.insert(earlier.id + "." + step.id);
   }
   for (const StepInfo& step : info.steps) {
-    for (const std::string& input : step.inputs) {
-      if (known.count(input)) continue;
-      throw Error(Error::Kind::Bug, fmt::format("step {}.{} reads {}, which does not stand before it",
-                                                info.id, step.id, input));
+    for (const auto* inputs : {&step.inputs, &step.later.inputs}) {
+      for (const std::string& input : *inputs) {
+        if (known.count(input)) continue;
+        throw Error(Error::Kind::Bug, fmt::format("step {}.{} reads {}, which does not stand before it",
+                                                  info.id, step.id, input));
+      }
     }
     known.insert(info.id + "." + step.id);
   }
@@ -55,6 +56,11 @@ const StepInfo& StageRegistry::step(std::string_view step) const {
     if (s.id == stepOf(step)) return s;
   }
   throw Error(Error::Kind::Usage, fmt::format("stage {} has no step \"{}\"", stageOf(step), stepOf(step)));
+}
+
+void StageRegistry::addWithReads(const std::string& step, std::set<std::string>& all) const {
+  if (!all.insert(step).second) return;
+  for (const std::string& read : readsOf(this->step(step))) addWithReads(read, all);
 }
 
 }  // namespace beam

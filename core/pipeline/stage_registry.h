@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,8 @@ class StageRegistry {
   const StageInfo& info(std::string_view stage) const;
   // `step`: full id. Throws Error{Usage} likewise.
   const StepInfo& step(std::string_view step) const;
+  // Into `all`: the step and everything that enters it, in this frame and those before.
+  void addWithReads(const std::string& step, std::set<std::string>& all) const;
 
  private:
   std::size_t indexOf(std::string_view stage) const;

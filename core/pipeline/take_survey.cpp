@@ -56,13 +56,15 @@ struct TakeSurveyor::Pass {
   }
 };
 
-const std::vector<Digest>& TakeSurveyor::keysOf(const Project& project, const std::string& step,
-                                                bool per_frame) {
+const TakeSurveyor::Keys& TakeSurveyor::keysOf(const Project& project, const std::string& step,
+                                               bool per_frame) {
   const auto [entry, fresh] = keys_.try_emplace(step);
   if (!fresh) return entry->second;
   try {
     const int frames = per_frame ? static_cast<int>(project.capture().frames.size()) : 1;
-    for (int f = 0; f < frames; ++f) entry->second.push_back(project.key(step, FrameIndex{f}));
+    for (FrameIndex f{0}; f.value < frames; ++f.value) {
+      entry->second.push_back(project.applies(step, f) ? std::optional(project.key(step, f)) : std::nullopt);
+    }
   } catch (...) {
     keys_.erase(entry);
     throw;
@@ -89,6 +91,7 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
   const std::string now = project.folder().string() + "\n" + toJson(project.document());
   if (now != known_for_) {
     keys_.clear();
+    project.forgetKeys();
     known_for_ = now;
   }
   const fs::path results = project.store().folderOf({}).parent_path();
@@ -105,19 +108,21 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
   std::vector<std::string> stamps(frames);
   for (const StageInfo& info : project.setup().stages.infos()) {
     SurveyLane lane{info.id, info.title, project.blockedReason(info.id), {}, {}};
-    lane.cells.assign(frames, lane.blocked_reason.empty() ? CellState::Done : CellState::Blocked);
+    lane.cells.assign(frames, lane.blocked_reason.empty() ? CellState::NotNeeded : CellState::Blocked);
     lane.notes.resize(frames);
     for (const StepInfo& step : info.steps) {
       if (!lane.blocked_reason.empty()) break;
       const std::string id = info.id + "." + step.id;
-      const std::vector<Digest>& keys = keysOf(project, id, step.per_frame);
+      const Keys& keys = keysOf(project, id, step.per_frame);
       for (std::size_t f = 0; f < frames; ++f) {
-        const Digest& key = keys[step.per_frame ? f : 0];
+        if (!keys[step.per_frame ? f : 0]) continue;
+        const Digest& key = *keys[step.per_frame ? f : 0];
         const CellState state = pass.stateOf(key, records_);
         const bool stale = state == CellState::Empty &&
                            pass.made.contains({id, step.per_frame ? survey.frames[f] : std::string()});
         CellState& cell = lane.cells[f];
-        if (cell == CellState::Done) cell = stale ? CellState::Stale : state;
+        const bool so_far_done = cell == CellState::Done || cell == CellState::NotNeeded;
+        if (so_far_done) cell = stale ? CellState::Stale : state;
         if (cell == CellState::Empty && stale) cell = CellState::Stale;
         if (state == CellState::Failed && lane.notes[f].empty()) {
           const std::optional<FailureNote> note = project.store().failure(key);

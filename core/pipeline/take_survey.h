@@ -20,7 +20,8 @@ enum class CellState {
   Done,
   Stale,  // there is a result, made with other settings or inputs
   Failed,
-  Blocked,  // needs something the project does not have
+  Blocked,    // needs something the project does not have
+  NotNeeded,  // none of its steps is for this frame of its take
 };
 
 struct SurveyLane {
@@ -59,11 +60,12 @@ class TakeSurveyor {
     bool whole = false;  // every file was there with its size
   };
   struct Pass;
-  const std::vector<Digest>& keysOf(const Project& project, const std::string& step, bool per_frame);
+  using Keys = std::vector<std::optional<Digest>>;  // none: the step is not for the frame
+  const Keys& keysOf(const Project& project, const std::string& step, bool per_frame);
   void readRecords(const Project& project, Pass& pass);
 
-  std::string known_for_;                            // project and settings that keys_ belong to
-  std::map<std::string, std::vector<Digest>> keys_;  // by step; one a frame, or a single one
+  std::string known_for_;             // project and settings that keys_ belong to
+  std::map<std::string, Keys> keys_;  // by step; one a frame, or a single one
   std::map<Digest, Record> records_;
 };
 

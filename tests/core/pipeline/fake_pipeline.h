@@ -49,6 +49,7 @@ struct FakeOptions {
   double normal_weight = 0.03;
   int batch = 64;
   std::string solver = "plain";
+  double reach = 1;
 };
 inline void describe(Fields& f, FakeOptions& o) {
   f.field({.name = "iterations", .label = "Iterations", .help = "Steps.", .min = 1, .max = 1000},
@@ -61,6 +62,9 @@ inline void describe(Fields& f, FakeOptions& o) {
            .effect = Effect::SpeedOnly},
           o.batch);
   f.field({.name = "solver", .label = "Solver", .help = "Way.", .choices = {"plain", "fancy"}}, o.solver);
+  f.group("later", [&] {
+    f.field({.name = "reach", .label = "Reach", .help = "Of motion.", .min = 0, .max = 9}, o.reach);
+  });
   f.group("refine", [&] {
     f.field({.name = "normal_weight", .label = "Normals", .help = "Weight.", .min = 0, .max = 1},
             o.normal_weight);
@@ -82,6 +86,10 @@ class FakeStage final : public StageOf<FakeOptions> {
     if (hooks_.at_step) hooks_.at_step(id, c);
     std::string text = id + "\n";
     for (const auto& [input, folder] : c.inputs) text += readTextFile(folder / "data.txt");
+    for (const auto& [earlier, folder] : c.previous) {
+      const std::string before = readTextFile(folder / "data.txt");
+      text += "before " + earlier + " " + digestOf(before).hex() + "\n";
+    }
     text += "iterations " + std::to_string(options_.iterations) + "\n";
     if (id == "surface.seed") text += std::to_string(c.capture.source->photo({}, c.frame).pixels[0].x) + "\n";
     c.progress.expect(options_.iterations);
@@ -118,10 +126,38 @@ inline std::vector<StageInfo> fakeStages() {
            {{.id = "bake", .title = "Bake", .inputs = {"light.import", "surface.refine"}}}}};
 }
 
+// With takes: the first frame of each is fitted, the others follow the frame before.
+inline std::vector<StageInfo> fakeStagesWithTakes() {
+  return {{"capture", "Capture", "", {{.id = "import", .title = "Import", .per_frame = false}}},
+          {"track",
+           "Track",
+           "",
+           {{.id = "pose",
+             .title = "Pose",
+             .reads = {Reads::Pictures},
+             .inputs = {"capture.import"},
+             .frames = Frames::InTakes,
+             .later = {.previous = {"track.pose"}}}}},
+          {"surface",
+           "Surface",
+           "",
+           {{.id = "fit",
+             .title = "Fit",
+             .reads = {Reads::Pictures},
+             .inputs = {"capture.import"},
+             .frames = Frames::FirstOfTake},
+            {.id = "refine",
+             .title = "Refine",
+             .reads = {Reads::Pictures},
+             .inputs = {"surface.fit"},
+             .later = {.inputs = {"track.pose"}, .previous = {"surface.refine"}}}}},
+          {"materials", "Materials", "", {{.id = "bake", .title = "Bake", .inputs = {"surface.refine"}}}}};
+}
+
 // A folder with a capture, a panorama file, presets and room for projects; and what runs them.
 class FakeHouse {
  public:
-  FakeHouse() {
+  explicit FakeHouse(const std::vector<StageInfo>& stages = fakeStages()) {
     std::filesystem::create_directories(root() / "capture");
     std::filesystem::create_directories(root() / "presets");
     std::ofstream(root() / "capture" / "dataset.json") << "{}";
@@ -129,7 +165,7 @@ class FakeHouse {
     std::ofstream(root() / "presets" / "standard.json") << "{}";
     std::ofstream(root() / "presets" / "draft.json") << R"({"surface.iterations": 3})";
     setup = std::make_shared<PipelineSetup>();
-    for (const StageInfo& info : fakeStages()) {
+    for (const StageInfo& info : stages) {
       setup->stages.add([info, this] { return std::make_unique<FakeStage>(info, hooks); });
     }
     setup->presets = root() / "presets";

@@ -60,7 +60,7 @@ TEST(ProjectSettings, OnlyWhatDiffersFromThePresetIsKept) {
 TEST(ProjectSettings, EveryFieldIsListedUnderItsFullName) {
   FakeHouse house;
   const std::vector<Field> fields = house.newProject().fields();
-  ASSERT_EQ(fields.size(), 16u);
+  ASSERT_EQ(fields.size(), 20u);
   EXPECT_EQ(fields.back().info.name, "materials.refine.normal_weight");
 }
 

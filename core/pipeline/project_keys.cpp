@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+// Project: takes, keys, and the states that follow from them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/pipeline/project.h"
+
+namespace beam {
+namespace fs = std::filesystem;
+// --- Takes ---
+
+std::vector<Take> Project::takes() const { return readTakes(document_.takes, capture().frames); }
+
+Take Project::takeOf(FrameIndex frame) const {
+  std::vector<Take>& owners = memo_.owners;
+  if (owners.empty()) {
+    for (std::int32_t f = 0; f < static_cast<std::int32_t>(capture().frames.size()); ++f)
+      owners.push_back({{f}, {f}, 1});
+    for (const Take& take : takes()) {
+      for (const FrameIndex f : take.frames()) owners[static_cast<std::size_t>(f.value)] = take;
+    }
+  }
+  const bool known = frame.value >= 0 && frame.value < static_cast<int>(owners.size());
+  return known ? owners[static_cast<std::size_t>(frame.value)] : Take{frame, frame, 1};
+}
+
+bool Project::savesTakes() const { return !readOnly() && isProject(folder_); }
+
+void Project::changeTakes(const std::function<std::vector<Take>(std::vector<Take>)>& change) {
+  const std::vector<std::string>& frames = capture().frames;
+  const auto changed = [&](const std::vector<SavedTake>& saved) {
+    const std::vector<Take> before = readTakes(saved, frames);
+    const std::vector<Take> after = change(before);
+    return after == before ? saved : saveTakes(after, frames);
+  };
+  document_.takes = savesTakes() ? changeSavedTakes(folder_, changed) : changed(document_.takes);
+  memo_.clear();
+}
+
+void Project::splitTake(FrameIndex frame) {
+  const std::vector<Take> own = beam::splitTake(takes(), frame);
+  changeTakes([&](std::vector<Take> others) { return beam::splitTake(std::move(others), frame); });
+  document_.takes = saveTakes(own, capture().frames);
+  memo_.clear();
+}
+
+void Project::readTakesAgain() {
+  if (!savesTakes()) return;
+  const fs::path file = folder_ / "project.json";
+  document_.takes = parseProjectDocument(readTextFile(file), file.string()).takes;
+  memo_.clear();
+}
+
+void Project::adoptTakes(const Project& other) {
+  document_.takes = other.document_.takes;
+  memo_.clear();
+}
+
+// --- Keys ---
+
+bool Project::applies(std::string_view step, FrameIndex frame) const {
+  const StepInfo& info = setup_->stages.step(step);
+  return info.frames == Frames::Every || beam::applies(info, takeOf(frame), frame);
+}
+
+const std::map<std::string, std::string>& Project::parametersOf(const std::string& step, bool later) const {
+  const std::pair<std::string, bool> name(step, later);
+  if (const auto known = memo_.parameters.find(name); known != memo_.parameters.end()) return known->second;
+  std::map<std::string, std::string> parameters;
+  const std::string stage = stageOf(step);
+  const std::vector<Field> defaults = fieldsOf(*setup_->stages.make(stage));
+  const std::vector<Field> in_force = fieldsOf(*makeStage(stage));
+  for (std::size_t i = 0; i < in_force.size(); ++i) {
+    if (in_force[i].value == defaults[i].value || !entersKey(in_force[i].info, stepOf(step), later)) continue;
+    parameters[stage + "." + in_force[i].info.name] = toText(in_force[i].value);
+  }
+  return memo_.parameters.emplace(name, std::move(parameters)).first->second;
+}
+
+// Per-frame steps, in order, whose results of earlier frames enter `step`.
+const std::vector<std::string>& Project::chainOf(const std::string& step) const {
+  if (const auto known = memo_.chains.find(step); known != memo_.chains.end()) return known->second;
+  const StageRegistry& stages = setup_->stages;
+  std::set<std::string> now, before;
+  std::vector<std::string> chain;
+  stages.addWithReads(step, now);
+  for (const std::string& id : now) {
+    for (const std::string& previous : stages.step(id).later.previous) stages.addWithReads(previous, before);
+  }
+  for (const StageInfo& info : stages.infos()) {
+    for (const StepInfo& s : info.steps) {
+      const std::string id = info.id + "." + s.id;
+      if (s.per_frame && before.contains(id)) chain.push_back(id);
+    }
+  }
+  return memo_.chains.emplace(step, std::move(chain)).first->second;
+}
+
+// Walks up the take from the last frame whose keys are known, so that no key recurses further than a frame.
+void Project::keepKeysBefore(const std::string& step, const Take& take, FrameIndex frame) const {
+  const std::vector<std::string>& chain = chainOf(step);
+  if (chain.empty()) return;
+  const auto toDo = [&](const std::string& id, FrameIndex f) {
+    return beam::applies(setup_->stages.step(id), take, f) &&
+           !memo_.keys.contains(KeyMemo::placeOf(id, take, f));
+  };
+  FrameIndex start = frame;
+  while (const std::optional<FrameIndex> before = take.before(start)) {
+    if (std::none_of(chain.begin(), chain.end(), [&](const auto& id) { return toDo(id, *before); })) break;
+    start = *before;
+  }
+  for (; start < frame; start.value += take.step) {
+    for (const std::string& id : chain) {
+      if (!toDo(id, start)) continue;
+      const Digest key = keyOf(ingredientsAt(id, take, start));
+      memo_.keys.emplace(KeyMemo::placeOf(id, take, start), key);
+    }
+  }
+}
+
+Digest Project::keyAt(const std::string& step, const Take& take, FrameIndex frame) const {
+  const KeyMemo::Place place = setup_->stages.step(step).per_frame ? KeyMemo::placeOf(step, take, frame)
+                                                                   : KeyMemo::placeOf(step, {}, {});
+  if (const auto known = memo_.keys.find(place); known != memo_.keys.end()) return known->second;
+  const Digest key = keyOf(ingredientsAt(step, take, frame));
+  memo_.keys.emplace(place, key);
+  return key;
+}
+
+KeyIngredients Project::ingredientsAt(const std::string& step, const Take& take, FrameIndex frame) const {
+  const StageRegistry& stages = setup_->stages;
+  const StepInfo& info = stages.step(step);
+  if (!beam::applies(info, take, frame))
+    throw Error(Error::Kind::Bug, fmt::format("{} is not for frame {} of its take", step, frame.value));
+  const std::optional<FrameIndex> before = info.per_frame ? take.before(frame) : std::nullopt;
+  const bool later = before && !info.later.empty();
+  KeyIngredients key{step, info.version, parametersOf(step, later), {}, {}, later};
+  for (const Reads reads : info.reads) {
+    switch (reads) {
+      case Reads::Calibration:
+        if (!memo_.calibration) memo_.calibration = inputs_->calibration(capture());
+        key.inputs["calibration"] = *memo_.calibration;
+        break;
+      case Reads::Pictures:
+        key.inputs["pictures"] = inputs_->pictures(capture(), frame, Split::Train);
+        break;
+      case Reads::HeldOut:
+        key.inputs["held_out"] = inputs_->pictures(capture(), frame, Split::Test);
+        break;
+      case Reads::Environment:
+        if (const auto file = environmentFile()) key.inputs["environment"] = inputs_->file(*file);
+        break;
+    }
+  }
+  keepKeysBefore(step, take, frame);
+  const auto add = [&](const std::vector<std::string>& ids, FrameIndex f, auto&& name) {
+    for (const std::string& id : ids) {
+      if (beam::applies(stages.step(id), take, f)) key.upstream[name(id)] = keyAt(id, take, f);
+    }
+  };
+  const auto same = [](const std::string& id) { return id; };
+  add(info.inputs, frame, same);
+  if (!later) return key;
+  add(info.later.inputs, frame, same);
+  add(info.later.previous, *before, previousName);
+  return key;
+}
+
+KeyIngredients Project::ingredients(std::string_view step, FrameIndex frame) const {
+  return ingredientsAt(std::string(step), takeOf(frame), frame);
+}
+
+Digest Project::key(std::string_view step, FrameIndex frame) const {
+  const std::string id(step);
+  const Take take = takeOf(frame);
+  const KeyMemo::Place place =
+      setup_->stages.step(step).per_frame ? KeyMemo::placeOf(id, take, frame) : KeyMemo::placeOf(id, {}, {});
+  const Digest key = keyOf(ingredientsAt(id, take, frame));
+  const auto [known, fresh] = memo_.keys.try_emplace(place, key);
+  if (fresh || known->second == key) return key;
+  memo_.clear();  // its input files are others now: so is the key of all that builds on them
+  return keyAt(id, take, frame);
+}
+
+// --- States ---
+
+std::string Project::blockedReason(std::string_view stage) const {
+  const StageInfo& info = setup_->stages.info(stage);
+  std::set<std::string> all;
+  for (const StepInfo& step : info.steps) setup_->stages.addWithReads(info.id + "." + step.id, all);
+  const bool needs_environment = std::any_of(all.begin(), all.end(), [&](const std::string& id) {
+    const std::vector<Reads>& reads = setup_->stages.step(id).reads;
+    return std::find(reads.begin(), reads.end(), Reads::Environment) != reads.end();
+  });
+  if (!needs_environment || environmentFile()) return {};
+  return fmt::format(
+      "{} needs a panorama of the light, which the capture does not have: give one with --environment "
+      "FILE (.exr or .hdr, latitude-longitude)",
+      info.title);
+}
+
+StepState Project::state(std::string_view step, FrameIndex frame) const {
+  if (!blockedReason(stageOf(step)).empty()) return StepState::Blocked;
+  if (!applies(step, frame)) return StepState::NotNeeded;
+  const Digest digest = key(step, frame);
+  if (store_->has(digest)) return StepState::Done;
+  if (store_->isLeased(digest)) return StepState::Running;
+  return store_->failure(digest) ? StepState::Failed : StepState::Pending;
+}
+
+StepState Project::stageState(std::string_view stage, FrameIndex frame) const {
+  const StageInfo& info = setup_->stages.info(stage);
+  for (const StepInfo& step : info.steps) {
+    const StepState found = state(info.id + "." + step.id, frame);
+    if (found != StepState::Done && found != StepState::NotNeeded) return found;
+  }
+  return StepState::Done;
+}
+
+std::string Project::failureOf(std::string_view step, FrameIndex frame) const {
+  if (!applies(step, frame)) return {};
+  const std::optional<FailureNote> note = store_->failure(key(step, frame));
+  return note ? note->message : std::string();
+}
+
+std::optional<fs::path> Project::result(std::string_view step, FrameIndex frame) const {
+  if (!blockedReason(stageOf(step)).empty() || !applies(step, frame)) return std::nullopt;
+  return store_->verified(key(step, frame));
+}
+
+std::optional<ResultRecord> Project::record(std::string_view step, FrameIndex frame) const {
+  if (!blockedReason(stageOf(step)).empty() || !applies(step, frame)) return std::nullopt;
+  return store_->record(key(step, frame));
+}
+
+}  // namespace beam
