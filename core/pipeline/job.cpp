@@ -28,7 +28,7 @@ bool spoilsOneFrameOnly(Error::Kind kind) { return kind == Error::Kind::Data || 
 
 }  // namespace
 
-Job::Job(const Project& project, ComputeDevice& device, std::stop_token stop, Tell tell,
+Job::Job(Project& project, ComputeDevice& device, std::stop_token stop, Tell tell,
          Slot<GaussianCloud>& preview)
     : project_(project), device_(device), stop_(std::move(stop)), tell_(std::move(tell)), preview_(preview) {
   sink_ = addLogSink([this](const LogRecord& record) {
@@ -70,14 +70,15 @@ JobFinished Job::run(const RunRequest& request) {
 }
 
 void Job::runAll(const RunRequest& request) {
+  makeRunPlan(project_, request);  // what cannot be run changes no takes
+  project_.forgetKeys();
+  if (!project_.readOnly()) project_.store().removeStale();
+  arrangeTakes(project_, request);
   const RunPlan plan = makeRunPlan(project_, request);
   finished_.notes = plan.notes;
-  if (!project_.readOnly()) project_.store().removeStale();
   const StageRegistry& stages = project_.setup().stages;
   for (const std::string& step : plan.project_steps) weight_total_ += stages.step(step).weight;
-  for (const std::string& step : plan.frame_steps) {
-    weight_total_ += stages.step(step).weight * static_cast<double>(plan.frames.size());
-  }
+  for (const FrameIndex frame : plan.frames) weight_total_ += weightOf(plan, frame);
   runProjectSteps(plan);
   runFrames(plan);
 }
@@ -90,29 +91,43 @@ void Job::runProjectSteps(const RunPlan& plan) {
 
 void Job::runFrames(const RunPlan& plan) {
   std::deque<FrameIndex> todo(plan.frames.begin(), plan.frames.end());
+  pending_.insert(plan.frames.begin(), plan.frames.end());
   std::size_t busy_in_a_row = 0;
   while (!todo.empty()) {
     const FrameIndex frame = todo.front();
     todo.pop_front();
     if (runFrame(plan, frame) != Ended::Busy) {
+      pending_.erase(frame);
       busy_in_a_row = 0;
       continue;
     }
     // Somebody else is at this frame: take the others first, and wait only when all are taken.
     todo.push_back(frame);
-    if (++busy_in_a_row >= todo.size()) waitALittle();
+    if (++busy_in_a_row < todo.size()) continue;
+    waitALittle();
+    busy_in_a_row = 0;
   }
 }
 
 Job::Ended Job::runFrame(const RunPlan& plan, FrameIndex frame) {
+  if (const auto lacked = waits_for_.find(frame); lacked != waits_for_.end()) {
+    const std::optional<FrameIndex> before = project_.takeOf(frame).before(frame);
+    if (before && pending_.contains(*before) && !project_.store().has(lacked->second)) return Ended::Busy;
+    waits_for_.erase(lacked);
+  }
   bool failed = false;
   for (const std::string& step : plan.frame_steps) {
+    if (!project_.applies(step, frame)) continue;
     if (failed) {
       weight_total_ -= project_.setup().stages.step(step).weight;
       continue;
     }
     try {
-      if (runStep(step, frame) == Ended::Busy) return Ended::Busy;
+      const Ended ended = runStep(step, frame);
+      if (ended == Ended::Busy) return ended;
+      if (ended != Ended::Severed) continue;
+      splitTakeAt(plan, frame);
+      return runFrame(plan, frame);
     } catch (const Error& e) {
       if (!spoilsOneFrameOnly(e.kind())) throw;
       failFrame(refTo(step, frame), e.what());
@@ -127,6 +142,7 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
   if (stop_.stop_requested()) throw Cancelled();
   const std::pair<std::string, int> id(step, frame ? frame->value : -1);
   if (acknowledged_.count(id)) return Ended::Reused;
+  const StepInfo& info = project_.setup().stages.step(step);
   now_ = refTo(step, frame);
   if (stages_told_.emplace(stageOf(step), id.second).second) {
     tell_(StageStarted{stageOf(step), now_.frame, now_.frame_name});
@@ -134,13 +150,14 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
   const FrameIndex index = frame.value_or(FrameIndex{});
   const KeyIngredients ingredients = project_.ingredients(step, index);
   const Digest key = keyOf(ingredients);
-  weight_now_ = project_.setup().stages.step(step).weight;
+  weight_now_ = info.weight;
   const auto reuse = [&] {
     weight_total_ -= weight_now_;
     acknowledge(now_, key, true, 0);
     return Ended::Reused;
   };
   if (project_.store().verified(key)) return reuse();
+  if (const Ended ready = afterPrevious(info, ingredients, index); ready != Ended::Computed) return ready;
   if (project_.readOnly()) {
     throw Error(
         Error::Kind::Storage,
@@ -153,6 +170,39 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
   if (project_.store().verified(key)) return reuse();  // published between the look and the lease
   compute(now_, ingredients, key);
   return Ended::Computed;
+}
+
+Job::Ended Job::afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, FrameIndex frame) {
+  for (const std::string& previous : step.later.previous) {
+    const auto key = ingredients.upstream.find(previousName(previous));
+    if (key == ingredients.upstream.end() || project_.store().verified(key->second)) continue;
+    if (!pending_.contains(*project_.takeOf(frame).before(frame))) return Ended::Severed;
+    waits_for_[frame] = key->second;
+    return Ended::Busy;
+  }
+  return Ended::Computed;
+}
+
+// A frame whose predecessor failed goes on as the first of a take of its own.
+void Job::splitTakeAt(const RunPlan& plan, FrameIndex frame) {
+  const FrameIndex before = *project_.takeOf(frame).before(frame);
+  logWarning("frame {} begins a new take: frame {}, on which it would build, has no result",
+             refTo({}, frame).frame_name, refTo({}, before).frame_name);
+  weight_total_ -= weightOf(plan, frame);
+  project_.splitTake(frame);
+  weight_total_ += weightOf(plan, frame);
+  for (const std::string& step : plan.frame_steps) {
+    if (acknowledged_.erase({step, frame.value}) > 0)
+      weight_total_ += project_.setup().stages.step(step).weight;  // to be done once more
+  }
+}
+
+double Job::weightOf(const RunPlan& plan, FrameIndex frame) const {
+  double sum = 0;
+  for (const std::string& step : plan.frame_steps) {
+    if (project_.applies(step, frame)) sum += project_.setup().stages.step(step).weight;
+  }
+  return sum;
 }
 
 void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key) {

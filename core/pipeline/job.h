@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -23,23 +24,32 @@ namespace beam {
 class Job {
  public:
   using Tell = std::function<void(JobEvent)>;
-  Job(const Project& project, ComputeDevice& device, std::stop_token stop, Tell tell,
-      Slot<GaussianCloud>& preview);
+  // `project` gets the takes that the run is about.
+  Job(Project& project, ComputeDevice& device, std::stop_token stop, Tell tell, Slot<GaussianCloud>& preview);
   ~Job();
 
   // Never throws: what went wrong is in the answer.
   JobFinished run(const RunRequest& request);
 
  private:
-  enum class Ended { Computed, Reused, Busy };
+  enum class Ended {
+    Computed,
+    Reused,
+    Busy,    // another process computes it, or what it builds on in the frame before
+    Severed  // the frame before will not have what it builds on
+  };
   using Clock = std::chrono::steady_clock;
 
   void runAll(const RunRequest& request);
   void runProjectSteps(const RunPlan& plan);
   void runFrames(const RunPlan& plan);
-  // Busy: another process computes one of its steps; come back later.
+  // Busy: come back later.
   Ended runFrame(const RunPlan& plan, FrameIndex frame);
   Ended runStep(const std::string& step, std::optional<FrameIndex> frame);
+  // Whether a step can begin now; Busy or Severed when what it reads of the frame before is not there.
+  Ended afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, FrameIndex frame);
+  void splitTakeAt(const RunPlan& plan, FrameIndex frame);
+  double weightOf(const RunPlan& plan, FrameIndex frame) const;
   void compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
   void build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record);
   std::filesystem::path resultOf(const std::string& step, const Digest& key, const StepRef& reader) const;
@@ -52,7 +62,7 @@ class Job {
   StepRef refTo(const std::string& step, std::optional<FrameIndex> frame) const;
   double secondsSince(Clock::time_point start) const;
 
-  const Project& project_;
+  Project& project_;
   ComputeDevice& device_;
   std::stop_token stop_;
   Tell tell_;
@@ -62,7 +72,9 @@ class Job {
   double weight_total_ = 0, weight_done_ = 0, weight_now_ = 0;
   std::set<std::pair<std::string, int>> acknowledged_;  // step, frame or -1
   std::set<std::pair<std::string, int>> stages_told_;
-  StepRef now_;  // the step at work, for messages
+  std::set<FrameIndex> pending_;            // frames that this run has not finished
+  std::map<FrameIndex, Digest> waits_for_;  // the result of the frame before that each busy one lacked
+  StepRef now_;                             // the step at work, for messages
   std::unique_ptr<SessionLog> log_;
   int sink_ = 0;
   std::mutex warnings_mutex_;

@@ -228,7 +228,8 @@ std::vector<SavedTake> changeSavedTakes(const fs::path& project, const ChangeTak
   std::vector<SavedTake> changed = change(document.takes);
   if (changed == document.takes) return changed;
   document.takes = changed;
-  writeLocked(project, document);
+  // No copy in history/: that is for what people change, and a run may change takes many times.
+  writeFileAtomically(file, toJson(document));
   return changed;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which steps a run takes, for which frames, in which order: decided before the first one starts.
+// Which steps a run takes, for which frames, in which order: decided before the first one starts. And which
+// takes the frames that it is asked for belong to.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,17 +12,25 @@
 namespace beam {
 
 struct RunRequest {
-  std::vector<FrameIndex> frames;  // empty: all frames of the capture
-  std::string stage;               // only this stage and what it needs; empty: every stage
-  std::string until;               // the last stage; empty: the last there is
+  // Each run of consecutive frames is a take. Empty: all frames of the capture, in the takes that are there,
+  // lengthened and joined.
+  std::vector<FrameIndex> frames = {};
+  std::string stage = {};  // only this stage and what it needs; empty: every stage
+  std::string until = {};  // the last stage; empty: the last there is
+  int every = 1;           // only every so-manieth frame, each building on the one that many before
+  // Of a whole run: the longest take it makes, 0: no longest; absent: the setting track.segment_frames.
+  std::optional<int> segment_frames = {};
 };
 
 struct RunPlan {
   std::vector<std::string> project_steps;  // full ids, in order; once a run
   std::vector<std::string> frame_steps;    // in order; for every frame
-  std::vector<FrameIndex> frames;
-  std::vector<std::string> notes;  // stages left out, and what they would need
+  std::vector<FrameIndex> frames;          // take by take, in order
+  std::vector<std::string> notes;          // stages left out, and what they would need
 };
+
+// Makes the takes of the project those of the request (Project::changeTakes); before makeRunPlan.
+void arrangeTakes(Project& project, const RunRequest& request);
 
 // Throws Error{Usage} for unknown stages and Error{Data} when the stage that was asked for by name cannot
 // run.

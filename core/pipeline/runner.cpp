@@ -17,7 +17,7 @@ void Runner::start(Project project, RunRequest request, std::shared_ptr<ComputeD
   running_ = true;
   preview_.publish(nullptr);
   thread_ = std::jthread([this, project = std::move(project), request = std::move(request),
-                          device = std::move(device)](std::stop_token stop) {
+                          device = std::move(device)](std::stop_token stop) mutable {
     JobFinished finished;
     {
       Job job(

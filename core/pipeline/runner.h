@@ -27,7 +27,8 @@ class Runner {
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  // Works on a snapshot: later changes of `project` do not reach this run. One run at a time: throws
+  // Works on a snapshot: later changes of `project` do not reach this run, and the takes it makes reach only
+  // project.json (Project::readTakesAgain). One run at a time: throws
   // Error{Bug} while one is going on. Whatever goes wrong inside arrives as JobFinished, the last event of a
   // run.
   void start(Project project, RunRequest request, std::shared_ptr<ComputeDevice> device);

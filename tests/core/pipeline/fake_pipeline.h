@@ -11,6 +11,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,7 @@ inline void describe(Fields& f, FakeOptions& o) {
 struct FakeHooks {
   std::function<void(const std::string& step, StepContext&)> at_step;
   std::map<std::string, int> computed;  // by step
+  std::mutex mutex;                     // over `computed`, for tests with two runners
 };
 
 class FakeStage final : public StageOf<FakeOptions> {
@@ -97,6 +99,7 @@ class FakeStage final : public StageOf<FakeOptions> {
     std::filesystem::create_directory(c.folder / "maps");
     std::ofstream(c.folder / "data.txt") << text;
     std::ofstream(c.folder / "maps" / "more.txt") << std::string(1000, 'x') << text;
+    std::lock_guard lock(hooks_.mutex);
     ++hooks_.computed[id];
   }
 

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs over takes: who waits for whom, and what is left when a frame fails.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <thread>
+
+#include "core/pipeline/file_lock.h"
+#include "core/pipeline/run_plan.h"
+#include "tests/core/pipeline/fake_pipeline.h"
+
+namespace beam::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+using Counts = std::map<std::string, int>;
+
+class TakeRun : public ::testing::Test {
+ protected:
+  explicit TakeRun(int frames = 6) {
+    house_.frame_names.clear();
+    for (int i = 0; i < frames; ++i) house_.frame_names.push_back(fmt::format("{:03}", i));
+  }
+  static RunRequest framesOf(std::initializer_list<int> numbers, int every = 1) {
+    RunRequest request;
+    for (const int n : numbers) request.frames.push_back({n});
+    request.every = every;
+    return request;
+  }
+  Counts countsOf(const RunRequest& request, const std::string& project = "p.beam") {
+    house_.hooks.computed.clear();
+    EXPECT_EQ(house_.finish(house_.open(project), request).outcome, JobOutcome::Done);
+    return house_.hooks.computed;
+  }
+  std::vector<SavedTake> saved() { return house_.open().document().takes; }
+
+  FakeHouse house_{fakeStagesWithTakes()};
+};
+
+TEST_F(TakeRun, AWholeRunMakesSegmentsAndFitsTheFirstFrameOfEach) {
+  house_.newProject();
+  RunRequest request;
+  request.segment_frames = 4;
+  EXPECT_EQ(countsOf(request), (Counts{{"capture.import", 1},
+                                       {"track.pose", 6},
+                                       {"surface.fit", 2},
+                                       {"surface.refine", 6},
+                                       {"materials.bake", 6}}));
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "003", 1}, SavedTake{"004", "005", 1}));
+  EXPECT_EQ(countsOf(request), Counts{});
+}
+
+TEST_F(TakeRun, NamedFramesAreTakesAndALoneOneIsNotTracked) {
+  house_.newProject();
+  EXPECT_EQ(
+      countsOf(framesOf({4})),
+      (Counts{{"capture.import", 1}, {"surface.fit", 1}, {"surface.refine", 1}, {"materials.bake", 1}}));
+  EXPECT_EQ(countsOf(framesOf({0, 1, 4})),
+            (Counts{{"track.pose", 2}, {"surface.fit", 1}, {"surface.refine", 2}, {"materials.bake", 2}}));
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "001", 1}));
+  EXPECT_EQ(countsOf({}), (Counts{{"track.pose", 4}, {"surface.refine", 4}, {"materials.bake", 4}}))
+      << "the take goes on; frame 4 is no longer alone";
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "005", 1}));
+}
+
+TEST_F(TakeRun, EveryKthFrameIsATakeWithAStride) {
+  house_.newProject();
+  const Counts counts = countsOf(framesOf({}, 2));
+  EXPECT_EQ(counts.at("surface.refine"), 3);
+  EXPECT_EQ(counts.at("surface.fit"), 1);
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "004", 2}));
+  EXPECT_EQ(house_.open().state("surface.refine", {1}), StepState::Pending);
+  countsOf(framesOf({1, 2, 3, 5}, 2));
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "004", 2}, SavedTake{"001", "003", 2}));
+  EXPECT_EQ(house_.finish(house_.open(), framesOf({}, 0)).kind, Error::Kind::Usage);
+}
+
+TEST_F(TakeRun, AnyStageTakesAlongWhatItsFramesBeforeNeed) {
+  const RunPlan plan = makeRunPlan(house_.newProject(), {.stage = "materials"});
+  EXPECT_THAT(plan.frame_steps, ElementsAre("track.pose", "surface.fit", "surface.refine", "materials.bake"));
+}
+
+TEST_F(TakeRun, FramesComeTakeByTake) {
+  Project p = house_.newProject();
+  p.changeTakes([](const auto&) { return std::vector<Take>{{{0}, {4}, 2}, {{1}, {3}, 2}}; });
+  std::vector<int> order;
+  for (const FrameIndex frame : makeRunPlan(p, {}).frames) order.push_back(frame.value);
+  EXPECT_THAT(order, ElementsAre(0, 2, 4, 1, 3, 5));
+}
+
+TEST_F(TakeRun, ALaterFrameIsGivenTheFrameBeforeAndAFirstOneIsNot) {
+  std::map<int, std::string> seen;
+  house_.hooks.at_step = [&](const std::string& step, StepContext& c) {
+    if (step != "surface.refine") return;
+    EXPECT_EQ(c.later(), c.previousResult("surface.refine") != nullptr);
+    EXPECT_EQ(c.later(), c.inputs.count("surface.fit") == 0);
+    seen[c.frame.value] = c.later() ? c.previousResult("surface.refine")->filename().string() : "";
+  };
+  const Project p = house_.newProject();
+  house_.finish(p, framesOf({0, 1, 2}));
+  const Project after = house_.open();
+  EXPECT_EQ(seen, (std::map<int, std::string>{{0, ""},
+                                              {1, after.key("surface.refine", {0}).hex()},
+                                              {2, after.key("surface.refine", {1}).hex()}}));
+}
+
+TEST_F(TakeRun, ABrokenOffRunGoesOnToTheSameResults) {
+  house_.newProject("whole.beam");
+  countsOf({}, "whole.beam");
+  house_.newProject();
+  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
+    if (step == "surface.refine" && c.frame.value == 3) throw Error(Error::Kind::Storage, "disk full");
+  };
+  EXPECT_EQ(house_.finish(house_.open(), {}).outcome, JobOutcome::Failed);
+  house_.hooks.at_step = nullptr;
+  EXPECT_EQ(countsOf({}).at("surface.refine"), 3);
+  EXPECT_EQ(productsOf(house_.root() / "p.beam"), productsOf(house_.root() / "whole.beam"));
+}
+
+TEST_F(TakeRun, AFailedFrameEndsItsTakeAndTheNextBeginsAnother) {
+  house_.newProject();
+  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
+    if (step == "surface.refine" && c.frame.value == 2) throw Error(Error::Kind::Data, "too dark");
+  };
+  std::string warning;
+  double most = 0;
+  std::size_t failed = 0;
+  for (const JobEvent& event : house_.run(house_.open())) {
+    if (const auto* w = std::get_if<JobWarning>(&event)) warning = w->text;
+    if (const auto* p = std::get_if<StepProgress>(&event)) most = std::max(most, p->job_fraction);
+    if (const auto* f = std::get_if<JobFinished>(&event)) failed = f->failed.size();
+  }
+  EXPECT_LE(most, 1 + 1e-9);
+  EXPECT_EQ(failed, 1u);
+  EXPECT_THAT(warning, HasSubstr("frame 003 begins a new take"));
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "002", 1}, SavedTake{"003", "005", 1}));
+  EXPECT_EQ(house_.hooks.computed.at("surface.fit"), 2);
+  EXPECT_EQ(house_.hooks.computed.at("materials.bake"), 5);
+  EXPECT_EQ(house_.open().state("surface.refine", {2}), StepState::Failed);
+
+  house_.hooks.at_step = nullptr;
+  EXPECT_EQ(countsOf({}), (Counts{{"surface.refine", 1}, {"materials.bake", 1}})) << "the rest stays";
+}
+
+TEST_F(TakeRun, AFailureThatTheNextFrameDoesNotNeedSplitsNothing) {
+  house_.newProject();
+  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
+    if (step == "materials.bake" && c.frame.value == 2) throw Error(Error::Kind::Data, "no light");
+  };
+  EXPECT_EQ(house_.finish(house_.open()).failed.size(), 1u);
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "005", 1}));
+}
+
+TEST_F(TakeRun, NamedFramesComputeNothingOutsideOfThem) {
+  house_.newProject();
+  std::set<int> touched;
+  house_.hooks.at_step = [&](const std::string&, StepContext& c) { touched.insert(c.frame.value); };
+  countsOf(framesOf({0, 1, 2, 3, 4, 5}));
+  touched.clear();
+  countsOf(framesOf({3, 4}));
+  EXPECT_THAT(touched, ElementsAre(3, 4));
+}
+
+TEST_F(TakeRun, ALaterFrameWaitsForTheFrameBeforeThatAnotherProcessIsAt) {
+  Project p = house_.newProject();
+  arrangeTakes(p, {});
+  std::optional<FileLock> other = p.store().tryLease(p.key("surface.refine", {1}));
+  ASSERT_TRUE(other);
+  int refined_before = -1;
+  house_.hooks.at_step = [&](const std::string& step, StepContext& c) {
+    if (step != "track.pose" || c.frame.value != 5) return;
+    refined_before = house_.hooks.computed["surface.refine"];
+    other.reset();
+  };
+  EXPECT_EQ(house_.finish(house_.open()).outcome, JobOutcome::Done);
+  EXPECT_EQ(refined_before, 1) << "only the frame before the busy one; poses do not wait";
+  EXPECT_EQ(house_.hooks.computed["surface.refine"], 6);
+  EXPECT_EQ(house_.hooks.computed["surface.fit"], 1);
+}
+
+TEST_F(TakeRun, TwoRunnersShareATakeWithoutDoingAnythingTwice) {
+  house_.newProject();
+  std::vector<JobFinished> finished(2);
+  {
+    std::vector<std::jthread> both;
+    for (JobFinished& f : finished) both.emplace_back([&, this] { f = house_.finish(house_.open()); });
+  }
+  for (const JobFinished& f : finished) EXPECT_EQ(f.outcome, JobOutcome::Done) << f.message;
+  EXPECT_EQ(house_.hooks.computed, (Counts{{"capture.import", 1},
+                                           {"track.pose", 6},
+                                           {"surface.fit", 1},
+                                           {"surface.refine", 6},
+                                           {"materials.bake", 6}}));
+}
+
+TEST_F(TakeRun, TakesOfTwoProcessesAreAllKept) {
+  house_.newProject();
+  {
+    std::vector<std::jthread> threads;
+    for (const int first : {0, 3}) {
+      threads.emplace_back([&, first] {
+        Project p = house_.open();
+        for (int length = 1; length < 3; ++length) {
+          p.changeTakes([&](std::vector<Take> takes) {
+            return addTake(std::move(takes), {{first}, {first + length}, 1});
+          });
+        }
+      });
+    }
+  }
+  EXPECT_THAT(saved(),
+              ::testing::UnorderedElementsAre(SavedTake{"000", "002", 1}, SavedTake{"003", "005", 1}));
+}
+
+}  // namespace
+}  // namespace beam::testing
