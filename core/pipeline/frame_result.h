@@ -18,8 +18,10 @@ inline constexpr const char* kMeshFile = "mesh.ply";
 inline constexpr const char* kMaterialsFile = "materials.ply";
 inline constexpr const char* kEnvironmentFile = "environment.exr";
 inline constexpr const char* kJointsFile =
-    "joints.ply";                                   // Gaussians, in the same order in all frames of a take
-inline constexpr const char* kMapsFolder = "maps";  // <camera>.<map>.exr
+    "joints.ply";  // Gaussians, in the same order in all frames of a take
+inline constexpr const char* kRestPoseFile = "rest.ply";         // of these joints, or of this skin on them
+inline constexpr const char* kJointPoseFile = "joint_pose.ply";  // corrected pose that carries this skin
+inline constexpr const char* kMapsFolder = "maps";               // <camera>.<map>.exr
 
 struct FrameResult {
   GaussianCloud cloud;

@@ -6,6 +6,7 @@ namespace beam {
 void registerBuiltinStages(StageRegistry& registry) {
   registry.add(makeCaptureStage);
   registry.add(makeLightStage);
+  registry.add(makeTrackStage);
   registry.add(makeSurfaceStage);
   registry.add(makeMaterialsStage);
 }

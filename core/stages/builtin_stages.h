@@ -10,6 +10,7 @@ void registerBuiltinStages(StageRegistry& registry);
 
 std::unique_ptr<Stage> makeCaptureStage();
 std::unique_ptr<Stage> makeLightStage();
+std::unique_ptr<Stage> makeTrackStage();
 std::unique_ptr<Stage> makeSurfaceStage();
 std::unique_ptr<Stage> makeMaterialsStage();
 

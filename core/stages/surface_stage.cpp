@@ -4,10 +4,13 @@
 #include "core/io/splat_ply.h"
 #include "core/method/extract_mesh.h"
 #include "core/method/fit_surface.h"
+#include "core/method/follow_surface.h"
 #include "core/method/score_views.h"
+#include "core/optim/pose_model.h"
 #include "core/pipeline/frame_result.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/score_files.h"
+#include "core/stages/track_files.h"
 #include "core/stages/training_input.h"
 
 namespace beam {
@@ -15,11 +18,13 @@ namespace {
 
 struct SurfaceOptions {
   FitSurfaceOptions fit;
+  FollowSurfaceOptions later;
   ExtractMeshOptions mesh;
 };
 
 void describe(Fields& fields, SurfaceOptions& options) {
   describe(fields, options.fit);
+  fields.group("later", [&] { describe(fields, options.later); });
   fields.group("mesh", [&] { describe(fields, options.mesh); });
 }
 
@@ -29,25 +34,29 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     static const StageInfo kInfo{
         .id = "surface",
         .title = "Surface",
-        .summary = "Fits Gaussians to the photographs of a frame and fuses a mesh from them.",
+        .summary =
+            "Fits Gaussians to the photographs, carries them from frame to frame, fuses a mesh from them.",
         .steps = {{.id = "seed",
                    .title = "Seed points",
                    .source = "BEAM 3.1",
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import"},
-                   .weight = 1},
+                   .weight = 1,
+                   .frames = Frames::FirstOfTake},
                   {.id = "fit",
                    .title = "Fit appearance",
                    .source = "BEAM 3.1, eq. 8",
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "surface.seed"},
-                   .weight = 45},
+                   .weight = 45,
+                   .later = {.inputs = {"track.joints"}, .previous = {"track.joints", "surface.refine"}}},
                   {.id = "refine",
                    .title = "Refine geometry",
                    .source = "BEAM 3.1, E_normal",
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "surface.fit"},
-                   .weight = 45},
+                   .weight = 45,
+                   .later = {.inputs = {"track.joints"}, .previous = {"surface.refine"}}},
                   {.id = "score",
                    .title = "Score against the photographs",
                    .reads = {Reads::Pictures, Reads::HeldOut},
@@ -70,21 +79,70 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
 
  private:
   void seed(StepContext& c) const {
-    const int count = static_cast<int>(options_.fit.seed_share * options_.fit.cap);
     const PointCloud seeds =
-        seedPoints(trainingViews(c), c.capture.seed_points, count, options_.fit.seed, c.progress);
+        seedPoints(trainingViews(c), c.capture.seed_points, seedCount(), options_.fit.seed, c.progress);
     writePointsPly(c.folder / kSeedsFile, seeds);
     c.scores["points"] = static_cast<double>(seeds.position_m.size());
   }
 
+  int seedCount() const { return static_cast<int>(options_.fit.seed_share * options_.fit.cap); }
+
   void fit(StepContext& c) const {
-    const PointCloud seeds = readPointsPly(c.input("surface.seed") / kSeedsFile);
-    keep(c, fitAppearance(trainingViews(c), seeds, options_.fit, c.device, c.progress, c.preview));
+    const std::vector<FrameView> views = trainingViews(c);
+    if (!c.later()) {
+      const PointCloud seeds = readPointsPly(c.input("surface.seed") / kSeedsFile);
+      return keep(c, fitAppearance(views, seeds, options_.fit, c.device, c.progress, c.preview));
+    }
+    if (restarted(c)) return fitAnew(c, views);
+    const Carried in = carried(c);
+    const Pose tracked_before = poseOf(readSplatPly(*c.previousResult("track.joints") / kJointsFile).cloud);
+    const Pose tracked = poseOf(readSplatPly(c.input("track.joints") / kJointsFile).cloud);
+    const Pose start = carriedJoints(
+        tracked_before, in.previous.joints.size() ? in.previous.joints : tracked_before, tracked);
+    keepSkin(c, followAppearance(views, {in.previous, in.rest_joints, start}, options_.fit, options_.later,
+                                 c.device, c.progress, c.preview));
   }
 
   void refine(StepContext& c) const {
-    const GaussianCloud fitted = readSplatPly(c.input("surface.fit") / kCloudFile).cloud;
-    keep(c, refineGeometry(trainingViews(c), fitted, options_.fit, c.device, c.progress, c.preview));
+    const std::vector<FrameView> views = trainingViews(c);
+    const std::filesystem::path& fitted = c.input("surface.fit");
+    GaussianCloud cloud = readSplatPly(fitted / kCloudFile).cloud;
+    if (!c.later() || restarted(c)) {
+      return keep(c, refineGeometry(views, cloud, options_.fit, c.device, c.progress, c.preview));
+    }
+    const Carried in = carried(c);
+    const CarriedSkin start{std::move(cloud), readPosePly(fitted / kRestPoseFile),
+                            readPosePly(fitted / kJointPoseFile)};
+    keepSkin(c, followGeometry(views, {in.previous, in.rest_joints, start.joints}, start, options_.fit,
+                               options_.later, c.device, c.progress, c.preview));
+  }
+
+  static bool restarted(const StepContext& c) { return readTrackNote(c.input("track.joints")).restarted; }
+
+  // Nothing of the frame before fits here: a first frame in the middle of a take.
+  void fitAnew(StepContext& c, const std::vector<FrameView>& views) const {
+    Progress seeding = c.progress.part(0.05, "seeding"), fitting = c.progress.part(0.95, "fitting");
+    const PointCloud seeds =
+        seedPoints(views, c.capture.seed_points, seedCount(), options_.fit.seed, seeding);
+    keep(c, fitAppearance(views, seeds, options_.fit, c.device, fitting, c.preview));
+  }
+
+  struct Carried {
+    CarriedSkin previous;  // joints empty: those that were tracked
+    Pose rest_joints;
+  };
+
+  static Carried carried(const StepContext& c) {
+    const std::filesystem::path& before = *c.previousResult("surface.refine");
+    Carried in{{readSplatPly(before / kCloudFile).cloud, {}, {}},
+               readPosePly(c.input("track.joints") / kRestPoseFile)};
+    if (std::filesystem::exists(before / kRestPoseFile)) {
+      in.previous.rest_skin = readPosePly(before / kRestPoseFile);
+      in.previous.joints = readPosePly(before / kJointPoseFile);
+    } else {
+      in.previous.rest_skin = poseOf(in.previous.cloud);  // a first frame is its own rest
+    }
+    return in;
   }
 
   // At the resolution of the fit; `beam evaluate` scores the whole pictures.
@@ -119,6 +177,14 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     validate(cloud);
     writeSplatPly(c.folder / kCloudFile, cloud, nullptr);
     c.scores["gaussians"] = static_cast<double>(cloud.size());
+  }
+
+  static void keepSkin(StepContext& c, const FollowedSkin& skin) {
+    keep(c, skin.cloud);
+    writePosePly(c.folder / kRestPoseFile, skin.rest_skin);
+    writePosePly(c.folder / kJointPoseFile, skin.joints);
+    c.scores["e_smooth"] = skin.smooth_m2;
+    c.scores["e_temp"] = skin.temporal;
   }
 };
 

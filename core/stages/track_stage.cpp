@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/base/log.h"
+#include "core/io/mesh_ply.h"
+#include "core/io/splat_ply.h"
+#include "core/method/fit_surface.h"
+#include "core/method/track_joints.h"
+#include "core/optim/pose_model.h"
+#include "core/pipeline/frame_result.h"
+#include "core/stages/builtin_stages.h"
+#include "core/stages/track_files.h"
+#include "core/stages/training_input.h"
+
+namespace beam {
+namespace {
+
+constexpr const char* kJointsStep = "track.joints";
+constexpr const char* kBeforeFile = "before.ply";  // pose of the frame before: the velocity
+constexpr double kSeedShare = 0.4;                 // seeds as a share of the joints; growth adds the rest
+
+struct TrackOptions {
+  TrackJointsOptions joints;
+  double restart_ratio = 2;  // ours (methods 3.8: off in the paper's code)
+  int segment_frames = 50;   // reliability 3.5
+};
+
+void describe(Fields& f, TrackOptions& o) {
+  describe(f, o.joints);
+  f.field({.name = "restart_ratio",
+           .label = "Restart at",
+           .help = "Joints are fitted anew where the residual grows to this many times that after the last "
+                   "start, as when a jacket comes off; 0 is off.",
+           .min = 0,
+           .max = 1000},
+          o.restart_ratio);
+  f.field({.name = "segment_frames",
+           .label = "Frames a segment",
+           .help = "A take is cut into segments of this length, each of which can run alone; 0: never cut.",
+           .min = 0,
+           .max = 1e6,
+           .effect = Effect::SpeedOnly},
+          o.segment_frames);
+}
+
+class TrackStage final : public StageOf<TrackOptions> {
+ public:
+  const StageInfo& info() const override {
+    static const StageInfo kInfo{
+        .id = "track",
+        .title = "Track",
+        .summary = "Follows joint Gaussians through a take; the skin of every later frame hangs on them.",
+        .steps = {{.id = "joints",
+                   .title = "Track joints",
+                   .source = "BEAM 3.1, eq. 9",
+                   .reads = {Reads::Pictures},
+                   .inputs = {"capture.import"},
+                   .weight = 30,
+                   .frames = Frames::InTakes,
+                   .later = {.previous = {kJointsStep}}}}};
+    return kInfo;
+  }
+
+  void run(std::string_view, StepContext& c) const override {
+    const std::vector<FrameView> views = trainingViews(c);
+    if (!c.later()) return start(c, views, false);
+    const std::filesystem::path& before = *c.previousResult(kJointsStep);
+    const TrackNote note = readTrackNote(before);
+    const TrackedJoints tracked = follow(c, views, before);
+    const double limit = options_.restart_ratio * note.reference_residual;
+    if (limit > 0 && tracked.residual > limit) {
+      logWarning(
+          "frame {}: the joints fit {:.1f} times worse than after the last start; they start anew here",
+          c.capture.frames[static_cast<std::size_t>(c.frame.value)],
+          tracked.residual / note.reference_residual);
+      return start(c, views, true);
+    }
+    writeSplatPly(c.folder / kJointsFile, tracked.joints, nullptr);
+    c.scores["residual"] = tracked.residual;
+    c.scores["e_rigid"] = tracked.rigid;
+    writeTrackNote(c.folder,
+                   {false, note.reference_residual > 0 ? note.reference_residual : tracked.residual});
+  }
+
+ private:
+  void start(StepContext& c, const std::vector<FrameView>& views, bool again) const {
+    Progress seeding = c.progress.part(0.1, "seeding");
+    const int count = std::max(100, static_cast<int>(kSeedShare * options_.joints.joints));
+    const PointCloud seeds = seedPoints(views, c.capture.seed_points, count, options_.joints.seed, seeding);
+    Progress fitting = c.progress.part(0.9, "first joints");
+    const GaussianCloud joints = fitFirstJoints(views, seeds, options_.joints, c.device, fitting, c.preview);
+    writeSplatPly(c.folder / kJointsFile, joints, nullptr);
+    writePosePly(c.folder / kRestPoseFile, poseOf(joints));
+    c.scores["residual"] = jointResidual(views, joints, options_.joints.mask_weight, c.device);
+    c.scores["restart"] = again ? 1 : 0;
+    c.scores["joints"] = static_cast<double>(joints.size());
+    writeTrackNote(c.folder, {again, 0});
+  }
+
+  TrackedJoints follow(StepContext& c, const std::vector<FrameView>& views,
+                       const std::filesystem::path& before) const {
+    const GaussianCloud previous = readSplatPly(before / kJointsFile).cloud;
+    const Pose rest = readPosePly(before / kRestPoseFile);
+    std::vector<vec3> earlier;
+    if (std::filesystem::exists(before / kBeforeFile)) earlier = readPosePly(before / kBeforeFile).position_m;
+    writePosePly(c.folder / kRestPoseFile, rest);
+    writePosePly(c.folder / kBeforeFile, poseOf(previous));
+    TrackedJoints tracked =
+        trackJoints(views, {rest, previous, earlier}, options_.joints, c.device, c.progress, c.preview);
+    validate(tracked.joints);
+    c.scores["motion_p95_m"] = motionOf(previous.position_m, tracked.joints.position_m);
+    return tracked;
+  }
+
+  // 95th percentile, metres.
+  static double motionOf(std::span<const vec3> from, std::span<const vec3> to) {
+    std::vector<float> moved(from.size());
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = glm::length(to[i] - from[i]);
+    const auto at = moved.begin() + static_cast<std::ptrdiff_t>(moved.size() * 95 / 100);
+    std::nth_element(moved.begin(), at, moved.end());
+    return *at;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> makeTrackStage() { return std::make_unique<TrackStage>(); }
+
+}  // namespace beam
