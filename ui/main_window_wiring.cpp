@@ -126,7 +126,8 @@ void MainWindow::run(const std::string& until, RunScope scope) {
   run_.active = true;
   for (int f = range.first; f <= range.last; ++f) {
     run_.frames.push_back(f);
-    request.frames.push_back(FrameIndex{f});
+    // A whole take goes on with the takes that are there; named frames would become one of their own.
+    if (scope != RunScope::Take) request.frames.push_back(FrameIndex{f});
   }
   timeline_->setRun(run_);
   job_.start(model_.project(), request, services_.job_device);

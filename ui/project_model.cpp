@@ -253,20 +253,22 @@ void ProjectModel::refresh(bool pictures) {
   if (!project_) return;
   pictures_due_ = pictures_due_ || pictures;
   const std::uint64_t ticket = ++states_ticket_;
-  states_worker_.submit([this, project = *project_, surveyor = surveyor_, ticket, look = pictures_due_] {
-    auto result = std::make_shared<Surveyed>();
-    result->ticket = ticket;
-    result->pictures = look;
-    try {
-      if (look) surveyor->forgetKeys();
-      result->survey = std::make_shared<const TakeSurvey>(surveyor->survey(project));
-      result->project = std::make_shared<const Project>(project);
-    } catch (const std::exception& e) {  // the border of this thread: said in the window
-      result->error = QString::fromStdString(e.what());
-    }
-    QMetaObject::invokeMethod(
-        this, [this, result] { take(result); }, Qt::QueuedConnection);
-  });
+  states_worker_.submit(
+      [this, project = *project_, surveyor = surveyor_, ticket, look = pictures_due_]() mutable {
+        auto result = std::make_shared<Surveyed>();
+        result->ticket = ticket;
+        result->pictures = look;
+        try {
+          project.readTakesAgain();  // runs change them
+          if (look) surveyor->forgetKeys();
+          result->survey = std::make_shared<const TakeSurvey>(surveyor->survey(project));
+          result->project = std::make_shared<const Project>(project);
+        } catch (const std::exception& e) {  // the border of this thread: said in the window
+          result->error = QString::fromStdString(e.what());
+        }
+        QMetaObject::invokeMethod(
+            this, [this, result] { take(result); }, Qt::QueuedConnection);
+      });
 }
 
 void ProjectModel::take(const std::shared_ptr<Surveyed>& result) {
@@ -279,6 +281,7 @@ void ProjectModel::take(const std::shared_ptr<Surveyed>& result) {
     return;
   }
   survey_ = result->survey;
+  project_->adoptTakes(*result->project);
   cache_.setSource([project = result->project](FrameIndex frame) { return valuesOf(*project, frame); },
                    survey_->stamps);
   showStages();

@@ -51,7 +51,14 @@ void addProjectFlags(CLI::App& command, ProjectFlags& flags) {
 void addRunFlags(CLI::App& command, RunFlags& flags) {
   command.add_option("--stage", flags.stage, "Only this stage and what it needs");
   command.add_option("--until", flags.until, "The last stage to run")->excludes("--stage");
-  command.add_option("--frames", flags.frames, "Frames: 0-7, 1,5, 1-9x2 or all")->type_name("LIST");
+  command
+      .add_option("--frames", flags.frames,
+                  "Frames: 0-7, 1,5, 1-9x2 or all; consecutive ones are solved as a take of their own")
+      ->type_name("LIST");
+  command
+      .add_option("--every", flags.every,
+                  "Only every Kth frame, each built on the one K before; steps run for these frames alone")
+      ->type_name("K");
   addDeviceFlags(command, flags.device);
 }
 
@@ -72,7 +79,8 @@ void applyFlags(Project& project, const ProjectFlags& flags) {
 }
 
 int runProject(Project project, const RunFlags& flags, CommandContext& context) {
-  RunRequest request{parseFrameList(flags.frames, project.capture().frames), flags.stage, flags.until};
+  RunRequest request{.stage = flags.stage, .until = flags.until, .every = flags.every};
+  if (flags.frames != "all") request.frames = parseFrameList(flags.frames, project.capture().frames);
   makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
   std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   project.save();

@@ -21,6 +21,7 @@ struct ProjectFlags {
 // What one run is about.
 struct RunFlags {
   std::string stage, until, frames = "all";
+  int every = 1;
   DeviceChoice device;
 };
 

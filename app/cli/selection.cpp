@@ -50,7 +50,10 @@ std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Projec
   std::vector<FrameIndex> solved;
   for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
     const FrameIndex frame{static_cast<std::int32_t>(f)};
-    if (project.state("surface.fit", frame) == StepState::Done) solved.push_back(frame);
+    // Later frames of a take are not fitted anew.
+    const bool is_solved = project.state("surface.fit", frame) == StepState::Done ||
+                           project.state("surface.refine", frame) == StepState::Done;
+    if (is_solved) solved.push_back(frame);
   }
   if (solved.empty()) {
     throw Error(Error::Kind::Data,

@@ -148,8 +148,9 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
     tell_(StageStarted{stageOf(step), now_.frame, now_.frame_name});
   }
   const FrameIndex index = frame.value_or(FrameIndex{});
-  const KeyIngredients ingredients = project_.ingredients(step, index);
-  const Digest key = keyOf(ingredients);
+  const std::optional<KeyIngredients> ingredients = ingredientsOf(step, frame);
+  if (!ingredients) return Ended::Severed;
+  const Digest key = keyOf(*ingredients);
   weight_now_ = info.weight;
   const auto reuse = [&] {
     weight_total_ -= weight_now_;
@@ -157,7 +158,7 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
     return Ended::Reused;
   };
   if (project_.store().verified(key)) return reuse();
-  if (const Ended ready = afterPrevious(info, ingredients, index); ready != Ended::Computed) return ready;
+  if (const Ended ready = afterPrevious(info, *ingredients, index); ready != Ended::Computed) return ready;
   if (project_.readOnly()) {
     throw Error(
         Error::Kind::Storage,
@@ -168,8 +169,20 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
   const std::optional<FileLock> lease = project_.store().tryLease(key);
   if (!lease) return Ended::Busy;
   if (project_.store().verified(key)) return reuse();  // published between the look and the lease
-  compute(now_, ingredients, key);
+  compute(now_, *ingredients, key);
   return Ended::Computed;
+}
+
+std::optional<KeyIngredients> Job::ingredientsOf(const std::string& step,
+                                                 std::optional<FrameIndex> frame) const {
+  try {
+    return project_.ingredients(step, frame.value_or(FrameIndex{}));
+  } catch (const Error& e) {
+    const std::optional<FrameIndex> before = frame ? project_.takeOf(*frame).before(*frame) : std::nullopt;
+    // If the file is one of this frame, it fails again as the first of its take, and for good.
+    if (!before || pending_.contains(*before) || !spoilsOneFrameOnly(e.kind())) throw;
+    return std::nullopt;
+  }
 }
 
 Job::Ended Job::afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, FrameIndex frame) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <stop_token>
 #include <string>
@@ -46,6 +47,8 @@ class Job {
   // Busy: come back later.
   Ended runFrame(const RunPlan& plan, FrameIndex frame);
   Ended runStep(const std::string& step, std::optional<FrameIndex> frame);
+  // None: they hang on a file of an earlier frame that cannot be read.
+  std::optional<KeyIngredients> ingredientsOf(const std::string& step, std::optional<FrameIndex> frame) const;
   // Whether a step can begin now; Busy or Severed when what it reads of the frame before is not there.
   Ended afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, FrameIndex frame);
   void splitTakeAt(const RunPlan& plan, FrameIndex frame);

@@ -223,8 +223,11 @@ void writeProjectDocument(const fs::path& project, ProjectDocument& document) {
 
 std::vector<SavedTake> changeSavedTakes(const fs::path& project, const ChangeTakes& change) {
   const fs::path file = project / "project.json";
+  const auto read = [&] { return parseProjectDocument(readTextFile(file), file.string()); };
+  const std::vector<SavedTake> seen = read().takes;
+  if (change(seen) == seen) return seen;
   const FileLock lock = lockProject(project);
-  ProjectDocument document = parseProjectDocument(readTextFile(file), file.string());
+  ProjectDocument document = read();
   std::vector<SavedTake> changed = change(document.takes);
   if (changed == document.takes) return changed;
   document.takes = changed;

@@ -72,6 +72,40 @@ std::string stepText(const Project& project, const std::string& id, const StepIn
   return text;
 }
 
+std::string takesText(const Project& project) {
+  std::string text;
+  for (const Take& take : project.takes()) {
+    text += fmt::format("{} {} to {}{}", text.empty() ? "takes" : ",", frameName(project, take.first),
+                        frameName(project, take.last),
+                        take.step == 1 ? std::string() : fmt::format(" in steps of {}", take.step));
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+Json takesJson(const Project& project) {
+  Json takes = Json::array();
+  for (const Take& take : project.takes()) {
+    takes.push_back({{"first", frameName(project, take.first)},
+                     {"last", frameName(project, take.last)},
+                     {"step", take.step}});
+  }
+  return takes;
+}
+
+Json idsJson(const Later& later) { return {{"inputs", later.inputs}, {"previous", later.previous}}; }
+
+const char* toText(Frames frames) {
+  switch (frames) {
+    case Frames::Every:
+      return "every";
+    case Frames::FirstOfTake:
+      return "first of take";
+    case Frames::InTakes:
+      return "in takes";
+  }
+  return "";
+}
+
 std::string failuresText(const Project& project, const std::string& id, const StepInfo& step) {
   std::string text;
   for (const FrameIndex frame : framesOf(project, step)) {
@@ -129,6 +163,7 @@ std::string statusText(const Project& project) {
                   project.capture().views.size(), project.capture().frames.size(), project.document().preset);
   for (const auto& [key, value] : project.document().settings)
     text += fmt::format("  {} = {}\n", key, toText(value));
+  text += takesText(project);
   for (const StageInfo& info : project.setup().stages.infos()) {
     text += fmt::format("{}\n", info.title);
     if (const std::string why = project.blockedReason(info.id); !why.empty()) {
@@ -153,6 +188,7 @@ std::string statusJson(const Project& project) {
   j["settings"] = Json::object();
   for (const auto& [key, value] : project.document().settings) j["settings"][key] = toJsonValue(value);
   j["frames"] = project.capture().frames;
+  j["takes"] = takesJson(project);
   j["stages"] = Json::array();
   for (const StageInfo& info : project.setup().stages.infos()) {
     Json stage = {{"id", info.id}, {"title", info.title}};
@@ -193,7 +229,9 @@ std::string stagesJson(const StageRegistry& stages) {
                                 {"source", step.source},
                                 {"version", step.version},
                                 {"per_frame", step.per_frame},
-                                {"inputs", step.inputs}});
+                                {"frames", toText(step.frames)},
+                                {"inputs", step.inputs},
+                                {"later", idsJson(step.later)}});
     }
     stage["settings"] = Json::array();
     for (const Field& field : defaultsOf(stages, info)) stage["settings"].push_back(toJsonValue(field));

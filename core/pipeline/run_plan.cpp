@@ -71,7 +71,8 @@ void arrangeTakes(Project& project, const RunRequest& request) {
 RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
   const StageRegistry& stages = project.setup().stages;
   if (request.every < 1)
-    throw Error(Error::Kind::Usage, fmt::format("every: expected 1 or more, found {}", request.every));
+    throw Error(Error::Kind::Usage,
+                fmt::format("every: expected a number of frames, 1 or more, found {}", request.every));
   RunPlan plan;
   std::set<std::string> chosen;
   if (!request.stage.empty()) {

@@ -62,6 +62,8 @@ TEST_F(ExitCode, WrongWordsAreUsageErrorsThatNameTheNearest) {
   expectUsage(process + Words{"--preset", "drift"}, "draft");
   expectUsage(process + Words{"--until", "surfaces"}, "surface");
   expectUsage(process + Words{"--frames", "99"}, "99");
+  expectUsage(process + Words{"--every", "0"}, "every");
+  expectUsage(process + Words{"--every", "two"}, "--every");
   expectUsage(process + Words{"--simd", "mmx"}, "mmx");
   expectUsage({"process", capture}, "--out");
   expectUsage({"frobnicate"}, "frobnicate");

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/pipeline/take_survey.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
 namespace beam::testing {
@@ -142,6 +143,13 @@ TEST_F(TakeKeys, ALongTakeCostsEachFrameOnce) {
   EXPECT_LE(chain, 2 * kFrames + 2) << "pose and refine look at the pictures of each frame";
   for (int f = 0; f < kFrames; ++f) p.key("surface.refine", {f});
   EXPECT_LE(counting->photos, chain + 2 * kFrames) << "then each key looks at its own only";
+  TakeSurveyor surveyor;
+  const int before_survey = counting->photos;
+  surveyor.survey(p);
+  const int surveyed = counting->photos - before_survey;
+  EXPECT_LE(surveyed, 2 * kFrames + 2);
+  surveyor.survey(p);
+  EXPECT_EQ(counting->photos, before_survey + surveyed) << "known keys are not worked out again";
 }
 
 }  // namespace

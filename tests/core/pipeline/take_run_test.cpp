@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/pipeline/file_lock.h"
+#include "core/pipeline/project_report.h"
 #include "core/pipeline/run_plan.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
@@ -79,6 +80,29 @@ TEST_F(TakeRun, EveryKthFrameIsATakeWithAStride) {
   EXPECT_EQ(house_.finish(house_.open(), framesOf({}, 0)).kind, Error::Kind::Usage);
 }
 
+TEST_F(TakeRun, AReadOnlyProjectKeepsTakesInMemory) {
+  Project p = house_.newProject();
+  std::filesystem::permissions(p.folder(), std::filesystem::perms(0555));
+  const auto before = everythingIn(p.folder());
+  arrangeTakes(p, {});
+  EXPECT_THAT(p.takes(), ElementsAre(Take{{0}, {5}, 1}));
+  p.readTakesAgain();
+  p.splitTake({4});
+  EXPECT_THAT(p.takes(), ElementsAre(Take{{0}, {3}, 1}, Take{{4}, {5}, 1}));
+  std::filesystem::permissions(p.folder(), std::filesystem::perms(0755));
+  EXPECT_EQ(everythingIn(p.folder()), before);
+  EXPECT_THAT(saved(), ::testing::IsEmpty());
+}
+
+TEST_F(TakeRun, StatusTellsTakesAndStepsThatAreNotNeeded) {
+  house_.newProject();
+  countsOf(framesOf({0, 1, 2}));
+  const std::string text = statusText(house_.open()), json = statusJson(house_.open());
+  EXPECT_THAT(text, HasSubstr("takes 000 to 002\n"));
+  EXPECT_THAT(text, HasSubstr("done 000, 001, 002; not needed (3 frames)"));
+  EXPECT_THAT(json, HasSubstr("\"state\": \"not needed\""));
+}
+
 TEST_F(TakeRun, AnyStageTakesAlongWhatItsFramesBeforeNeed) {
   const RunPlan plan = makeRunPlan(house_.newProject(), {.stage = "materials"});
   EXPECT_THAT(plan.frame_steps, ElementsAre("track.pose", "surface.fit", "surface.refine", "materials.bake"));
@@ -144,6 +168,31 @@ TEST_F(TakeRun, AFailedFrameEndsItsTakeAndTheNextBeginsAnother) {
 
   house_.hooks.at_step = nullptr;
   EXPECT_EQ(countsOf({}), (Counts{{"surface.refine", 1}, {"materials.bake", 1}})) << "the rest stays";
+}
+
+TEST_F(TakeRun, APictureThatIsGoneSpoilsItsFrameOnly) {
+  class GoneFrames final : public FrameSource {
+   public:
+    bool has(ViewIndex, FrameIndex) const override { return true; }
+    std::vector<std::string> files(ViewIndex, FrameIndex frame) const override {
+      return frame.value == 2 ? std::vector<std::string>{"gone.png"} : std::vector<std::string>{};
+    }
+    Image<u8vec3> photo(ViewIndex, FrameIndex frame) const override {
+      return Image<u8vec3>(4, 4, u8vec3(static_cast<std::uint8_t>(frame.value)));
+    }
+    Image<std::uint8_t> mask(ViewIndex, FrameIndex) const override { return {}; }
+  };
+  const auto open = house_.setup->open_capture;
+  house_.setup->open_capture = [&](const auto& folder, const auto& options) {
+    ImportedCapture imported = open(folder, options);
+    imported.set.source = std::make_shared<GoneFrames>();
+    return imported;
+  };
+  const JobFinished finished = house_.finish(house_.newProject());
+  EXPECT_EQ(finished.outcome, JobOutcome::DoneWithFailures);
+  ASSERT_EQ(finished.failed.size(), 1u);
+  EXPECT_EQ(finished.failed.front().ref.frame_name, "002");
+  EXPECT_EQ(house_.hooks.computed.at("materials.bake"), 5);
 }
 
 TEST_F(TakeRun, AFailureThatTheNextFrameDoesNotNeedSplitsNothing) {

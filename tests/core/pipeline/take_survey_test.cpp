@@ -93,6 +93,26 @@ TEST(TakeSurvey, KeepsWhyAFrameFailed) {
   EXPECT_TRUE(surface.notes[1].empty());
 }
 
+TEST(TakeSurvey, TellsFramesThatAStageIsNotForAndFollowsTheTakes) {
+  FakeHouse house(fakeStagesWithTakes());
+  Project project = house.newProject();
+  RunRequest first_two;
+  first_two.frames = {FrameIndex{0}, FrameIndex{1}};
+  house.finish(project, first_two);
+  project.readTakesAgain();
+  TakeSurveyor surveyor;
+  const TakeSurvey survey = surveyor.survey(project);
+  EXPECT_THAT(laneOf(survey, "track").cells,
+              ElementsAre(CellState::Done, CellState::Done, CellState::NotNeeded));
+  EXPECT_THAT(laneOf(survey, "surface").cells,
+              ElementsAre(CellState::Done, CellState::Done, CellState::Empty));
+  project.changeTakes([](const auto&) { return std::vector<Take>{}; });
+  const TakeSurvey alone = surveyor.survey(project);
+  EXPECT_THAT(laneOf(alone, "track").cells, Each(CellState::NotNeeded));
+  EXPECT_THAT(laneOf(alone, "surface").cells,
+              ElementsAre(CellState::Done, CellState::Stale, CellState::Empty));
+}
+
 TEST(TakeSurvey, BlockedLanesSayWhatTheyNeed) {
   FakeHouse house;
   house.has_panorama = false;
