@@ -5,8 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/cli/commands.h"
+#include "app/cli/quality_history.h"
 #include "app/cli/run_flags.h"
 #include "core/base/error.h"
 #include "core/pipeline/project_report.h"
@@ -36,6 +38,21 @@ Project projectFor(const fs::path& folder, const fs::path& capture, const Servic
   }
   project.setCapture(capture);
   return project;
+}
+
+std::string statusOf(const Project& project, bool json) {
+  const std::vector<LeftOutCamera> left_out = leftOutCameras(project);
+  if (!json) {
+    std::string text = statusText(project);
+    for (const LeftOutCamera& c : left_out) text += fmt::format("\nleft out of the fit: {}", toText(c, {}));
+    return text;
+  }
+  nlohmann::ordered_json j = nlohmann::ordered_json::parse(statusJson(project));
+  j["left_out"] = nlohmann::ordered_json::array();
+  for (const LeftOutCamera& c : left_out)
+    j["left_out"].push_back(
+        {{"camera", c.camera}, {"kind", toText(c.kind)}, {"frames", c.frames}, {"text", c.text}});
+  return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 struct ProcessArguments {
@@ -105,7 +122,7 @@ void addStatusCommand(CLI::App& app, CommandContext& context) {
   command->callback([folder, json, &context] {
     context.action = [folder, json, &context] {
       const Project project = Project::open(*folder, context.services.pipeline);
-      context.console.print(*json ? statusJson(project) : statusText(project));
+      context.console.print(statusOf(project, *json));
       return 0;
     };
   });

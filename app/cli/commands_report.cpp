@@ -155,6 +155,9 @@ int runReport(const ReportFlags& flags, CommandContext& context) {
   page.evaluation = evaluationOf(project);
   writeFileAtomically(flags.out, toHtml(page));
   context.console.endProgress();
+  for (const LeftOutCamera& c : page.history.left_out)
+    context.console.warning(fmt::format("left out of the fit: {}", toText(c, page.history.defects)));
+  if (const std::string loss = toText(page.history.loss); !loss.empty()) context.console.warning(loss);
   for (const Defect& d : page.history.defects)
     context.console.warning(
         fmt::format("camera {} {} (frames {})", d.camera, d.text, fmt::join(d.frames, ", ")));

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/stages/score_files.h"
+#include "core/stages/screening_file.h"
 
 namespace beam {
 namespace {
@@ -35,7 +36,10 @@ class Collector {
       FrameQuality q = frame(FrameIndex{static_cast<std::int32_t>(f)});
       if (!q.seconds.empty() || !q.failures.empty()) history_.frames.push_back(std::move(q));
     }
-    history_.defects = findDefects(scored());
+    const std::vector<ScoredFrame> frames = scored();
+    history_.defects = findDefects(frames);
+    history_.left_out = leftOutCameras(project_);
+    history_.loss = lossOf(frames);
     return std::move(history_);
   }
 
@@ -113,6 +117,20 @@ class Collector {
 }  // namespace
 
 QualityHistory qualityHistory(const Project& project) { return Collector(project).collect(); }
+
+std::vector<LeftOutCamera> leftOutCameras(const Project& project) {
+  std::vector<ScreenedFrame> frames;
+  for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
+    const auto index = static_cast<std::int32_t>(f);
+    try {
+      if (const auto folder = project.result("capture.screen", FrameIndex{index}))
+        frames.push_back({project.capture().frames[f], index, readScreening(*folder).left_out});
+    } catch (const Error& e) {
+      logWarning("{}; what the frame was fitted without is not known", e.what());
+    }
+  }
+  return collectLeftOut(frames);
+}
 
 std::vector<Curve> curvesOf(const QualityHistory& history) {
   std::map<std::string, Curve> curves;

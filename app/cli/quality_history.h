@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/method/find_defects.h"
+#include "core/method/left_out.h"
 #include "core/pipeline/project.h"
 
 namespace beam {
@@ -25,11 +26,16 @@ struct QualityHistory {
   std::vector<FrameQuality> frames;   // with at least one result or failure, in order
   std::vector<std::string> warnings;  // of the capture and of the records, each once
   std::vector<Defect> defects;
+  std::vector<LeftOutCamera> left_out;  // of the fit, by capture.screen
+  LeftOutLoss loss;
   double seconds = 0;  // of all results, the project's own too
   double peak_memory_bytes = 0;
 };
 
 QualityHistory qualityHistory(const Project& project);
+// Cameras that the frames screened so far go without; a screening that cannot be read is left out with a
+// warning.
+std::vector<LeftOutCamera> leftOutCameras(const Project& project);
 
 // Scores of several frames, by name, in order of frames.
 struct Curve {

@@ -41,6 +41,7 @@ std::string namesText(const std::vector<std::string>& names) {
 // What a camera was like over the frames.
 struct CameraRow {
   bool held_out = false;
+  std::size_t left_out = 0;  // frames
   double psnr = 0, ssim = 0, least = 0, n = 0;
   std::string least_frame;
   std::vector<std::pair<std::size_t, double>> over_time;
@@ -120,7 +121,9 @@ class PageWriter {
 
   void findings() {
     section("Findings");
-    if (h_.defects.empty() && h_.warnings.empty() && failures() == 0) {
+    leftOut();
+    const bool failed = failures() > 0;
+    if (h_.left_out.empty() && h_.defects.empty() && h_.warnings.empty() && !failed) {
       out_ += "<p>No camera and no frame stands out, and no step warned.</p>\n";
       return;
     }
@@ -143,6 +146,16 @@ class PageWriter {
       for (const std::string& w : h_.warnings) out_ += fmt::format("<li>{}</li>\n", escapedHtml(w));
       out_ += "</ul>\n";
     }
+  }
+
+  void leftOut() {
+    if (h_.left_out.empty()) return;
+    out_ += "<h3>Left out of the fit</h3>\n<ul class=\"left-out\">";
+    for (const LeftOutCamera& c : h_.left_out)
+      out_ += fmt::format("<li>{}.</li>\n", escapedHtml(toText(c, h_.defects)));
+    out_ += "</ul>\n";
+    if (const std::string loss = toText(h_.loss); !loss.empty())
+      out_ += fmt::format("<p>{}</p>\n", escapedHtml(loss));
   }
 
   // Failed steps as a list; how many there are.
@@ -218,6 +231,7 @@ class PageWriter {
       for (const ViewScore& v : h_.frames[f].views) {
         CameraRow& r = rows[v.camera];
         r.held_out = v.held_out;
+        r.left_out += v.left_out;
         if (r.n == 0 || v.score.psnr < r.least) r.least = v.score.psnr, r.least_frame = frames_[f];
         r.psnr += v.score.psnr, r.ssim += v.score.ssim, ++r.n;
         r.over_time.emplace_back(f, v.score.psnr);
@@ -244,6 +258,13 @@ class PageWriter {
         kWidth, kHeight, row.held_out ? 1 : 0, path, row.held_out ? 1 : 0, x(last.first), y(last.second));
   }
 
+  static std::string useOf(const CameraRow& row) {
+    if (row.held_out) return "held out";
+    if (row.left_out == 0) return "training";
+    const auto frames = static_cast<std::size_t>(row.n);
+    return row.left_out == frames ? "left out" : fmt::format("training, left out of {}", row.left_out);
+  }
+
   void cameras() {
     const std::map<std::string, CameraRow> rows = cameraRows();
     if (rows.empty()) return;
@@ -257,9 +278,9 @@ class PageWriter {
     out_ += "<table>" + head({"Camera", "Use", "PSNR, dB", "SSIM", "Least PSNR", "in frame", "Over time"}) +
             "<tbody>";
     for (const auto& [name, r] : rows) {
-      out_ += "<tr>" + cell(name, accused.contains(name) ? "name bad" : "name") +
-              cell(r.held_out ? "held out" : "training") + number(r.psnr / r.n, 2) + number(r.ssim / r.n, 4) +
-              number(r.least, 2) + cell(r.least_frame) + "<td>" + sparkline(r, low, high) + "</td></tr>\n";
+      out_ += "<tr>" + cell(name, accused.contains(name) ? "name bad" : "name") + cell(useOf(r)) +
+              number(r.psnr / r.n, 2) + number(r.ssim / r.n, 4) + number(r.least, 2) + cell(r.least_frame) +
+              "<td>" + sparkline(r, low, high) + "</td></tr>\n";
     }
     out_ += fmt::format("</tbody></table>\n<p class=\"note\">Lines: PSNR from {:.1f} to {:.1f} dB.</p>\n",
                         low, high);

@@ -84,7 +84,7 @@ class DefectFinder {
     double all = 0, others = 0, n = 0, n_others = 0;
     for (const std::size_t f : at) {
       for (const ViewScore& v : frames_[f].views) {
-        if (v.held_out) continue;
+        if (v.held_out || (v.left_out && v.camera != d.camera)) continue;
         all += v.score.psnr, ++n;
         if (v.camera != d.camera) others += v.score.psnr, ++n_others;
       }
@@ -183,7 +183,8 @@ class DefectFinder {
       if (scores[f]) at.push_back(f);
     }
     // A camera that took part in the fit has drawn the renders towards its own moment.
-    const bool fitted = !scores[at.front()]->held_out;
+    const bool fitted = std::any_of(
+        at.begin(), at.end(), [&](std::size_t f) { return !scores[f]->held_out && !scores[f]->left_out; });
     const int count = std::abs(best_lag);
     add(DefectKind::Late, camera, at, best_lag,
         fmt::format(

@@ -122,7 +122,7 @@ std::vector<ViewScore> scoreViews(std::span<const FrameView> views, bool held_ou
 SplitScore meanOf(std::span<const ViewScore> scores, bool held_out) {
   SplitScore s;
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    if (scores[i].held_out != held_out) continue;
+    if (scores[i].held_out != held_out || scores[i].left_out) continue;
     const PictureScore& p = scores[i].score;
     s.mean.psnr += p.psnr, s.mean.ssim += p.ssim, s.mean.psnr_mask += p.psnr_mask;
     if (s.n == 0 || p.psnr < scores[s.worst].score.psnr) s.worst = i;

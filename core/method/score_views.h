@@ -21,6 +21,7 @@ inline constexpr int kThumbSide_px = 64;
 struct ViewScore {
   std::string camera;
   bool held_out = false;
+  bool left_out = false;  // a training camera that the frame was fitted without; of neither split
   PictureScore score;
   double photo_luma = 0, render_luma = 0;            // mean
   double photo_sharpness = 0, render_sharpness = 0;  // mean |4 v - sum of the four neighbours|

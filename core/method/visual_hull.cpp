@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/parallel.h"
 
@@ -10,6 +11,8 @@ namespace beam {
 namespace {
 
 constexpr std::uint8_t kInside = 128;
+constexpr double kNearest_m = 0.01;
+constexpr int kMostHalvings = 9;  // 512 cells a side
 
 std::vector<std::uint32_t> integralOf(const Image<std::uint8_t>& mask) {
   const int w = mask.width + 1;
@@ -39,7 +42,7 @@ VisualHull::Votes VisualHull::votes(vec3 x_in_world) const {
   Votes votes;
   for (const MaskView& v : views_) {
     const dvec3 t = v.rotation * dvec3(x_in_world) + v.translation;
-    if (t.z <= 0.01) continue;
+    if (t.z <= kNearest_m) continue;
     const dvec2 p = project(v.intrinsics, t);
     if (!(p.x >= 0 && p.y >= 0 && p.x < v.width && p.y < v.height)) continue;
     ++votes.seen;
@@ -53,28 +56,109 @@ bool VisualHull::contains(vec3 x_in_world) const {
   return v.seen >= std::min<int>(2, static_cast<int>(views_.size())) && v.inside == v.seen;
 }
 
+std::optional<VisualHull::PixelBox> VisualHull::boxOf(const MaskView& v, const dvec3& in_camera,
+                                                      double radius) {
+  const dvec2 p = project(v.intrinsics, in_camera);
+  const double r = radius * std::max(v.intrinsics.fx, v.intrinsics.fy) / (in_camera.z - radius);
+  if (p.x + r < 0 || p.y + r < 0 || p.x - r >= v.width || p.y - r >= v.height) return std::nullopt;
+  return PixelBox{std::clamp(static_cast<int>(std::floor(p.x - r)), 0, v.width),
+                  std::clamp(static_cast<int>(std::floor(p.y - r)), 0, v.height),
+                  std::clamp(static_cast<int>(std::ceil(p.x + r)), 0, v.width),
+                  std::clamp(static_cast<int>(std::ceil(p.y + r)), 0, v.height)};
+}
+
+std::uint32_t VisualHull::insideCount(const MaskView& v, const PixelBox& box) {
+  const auto at = [&](int x, int y) { return v.integral[static_cast<std::size_t>(y) * (v.width + 1) + x]; };
+  return at(box.x1, box.y1) - at(box.x0, box.y1) - at(box.x1, box.y0) + at(box.x0, box.y0);
+}
+
+std::optional<VisualHull::PixelBox> VisualHull::footprint(int view, const dvec3& center, double half) const {
+  const MaskView& v = views_[static_cast<std::size_t>(view)];
+  const dvec3 t = v.rotation * center + v.translation;
+  const double radius = half * std::sqrt(3.0);
+  if (t.z <= radius + kNearest_m) return std::nullopt;
+  return boxOf(v, t, radius);
+}
+
+std::uint32_t VisualHull::insideCount(int view, const PixelBox& box) const {
+  return insideCount(views_[static_cast<std::size_t>(view)], box);
+}
+
+std::optional<VisualHull::Cell> VisualHull::votedCell(const dvec3& center, double half,
+                                                      int most_denials) const {
+  Cell cell{center};
+  int seen = 0;
+  for (int v = 0; v < static_cast<int>(views_.size()); ++v) {
+    const std::optional<PixelBox> box = footprint(v, center, half);
+    if (!box) continue;
+    ++seen;
+    if (insideCount(v, *box) > 0) continue;
+    if (++cell.denials > most_denials) return std::nullopt;
+    cell.denier = v;
+  }
+  if (seen < 2) return std::nullopt;
+  return cell;
+}
+
+// How often a cell of `half` is to be halved for `share` of the subject's size.
+int VisualHull::halvings(const dvec3& center, double half, double share) const {
+  std::vector<double> ratios;
+  for (const MaskView& v : views_) {
+    const double z = (v.rotation * center + v.translation).z;
+    const double area = v.integral.back();
+    if (z <= kNearest_m || area == 0) continue;
+    const double radius_px = half * std::sqrt(3.0) * std::max(v.intrinsics.fx, v.intrinsics.fy) / z;
+    ratios.push_back(radius_px / std::max(1.0, share * std::sqrt(area)));
+  }
+  if (ratios.empty()) return 0;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return std::clamp(static_cast<int>(std::ceil(std::log2(*middle))), 0, kMostHalvings);
+}
+
+VisualHull::Cells VisualHull::cellsDeniedBy(int most_denials, double share, const Progress& progress) const {
+  Cells found;
+  if (views_.empty()) return found;
+  dvec3 origin;
+  boundingCube(origin, found.half_m);
+  found.cells.push_back({origin});
+  for (int level = halvings(origin, found.half_m, share); level > 0; --level) {
+    const double half = found.half_m /= 2;
+    std::vector<std::vector<Cell>> children(found.cells.size());
+    parallelFor(found.cells.size(), 256, [&](std::size_t begin, std::size_t end) {
+      if (progress.stopRequested()) return;
+      for (std::size_t i = begin; i < end; ++i) {
+        for (int k = 0; k < 8; ++k) {
+          const dvec3 step(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+          const std::optional<Cell> cell = votedCell(found.cells[i].center + half * step, half, most_denials);
+          if (cell) children[i].push_back(*cell);
+        }
+      }
+    });
+    progress.check();
+    found.cells.clear();
+    for (const std::vector<Cell>& c : children) found.cells.insert(found.cells.end(), c.begin(), c.end());
+  }
+  return found;
+}
+
 VisualHull::Cover VisualHull::classify(const dvec3& center, double half) const {
   bool inside = true;
   int seen = 0;
   const double radius = half * std::sqrt(3.0);
   for (const MaskView& v : views_) {
     const dvec3 t = v.rotation * center + v.translation;
-    if (t.z <= radius + 0.01) {
+    if (t.z <= radius + kNearest_m) {
       inside = false;
       continue;
     }
-    const dvec2 p = project(v.intrinsics, t);
-    const double r = radius * std::max(v.intrinsics.fx, v.intrinsics.fy) / (t.z - radius);
-    if (p.x + r < 0 || p.y + r < 0 || p.x - r >= v.width || p.y - r >= v.height) continue;
-    const int x0 = std::clamp(static_cast<int>(std::floor(p.x - r)), 0, v.width);
-    const int x1 = std::clamp(static_cast<int>(std::ceil(p.x + r)), 0, v.width);
-    const int y0 = std::clamp(static_cast<int>(std::floor(p.y - r)), 0, v.height);
-    const int y1 = std::clamp(static_cast<int>(std::ceil(p.y + r)), 0, v.height);
+    const std::optional<PixelBox> box = boxOf(v, t, radius);
+    if (!box) continue;
     ++seen;
-    const auto at = [&](int x, int y) { return v.integral[static_cast<std::size_t>(y) * (v.width + 1) + x]; };
-    const std::uint32_t count = at(x1, y1) - at(x0, y1) - at(x1, y0) + at(x0, y0);
+    const std::uint32_t count = insideCount(v, *box);
     if (count == 0) return Cover::Outside;
-    if (count < static_cast<std::uint32_t>(x1 - x0) * static_cast<std::uint32_t>(y1 - y0)) inside = false;
+    if (count < static_cast<std::uint32_t>(box->x1 - box->x0) * static_cast<std::uint32_t>(box->y1 - box->y0))
+      inside = false;
   }
   if (seen < std::min<int>(2, static_cast<int>(views_.size()))) return Cover::Outside;
   return inside ? Cover::Inside : Cover::Mixed;

@@ -2,6 +2,8 @@
 // Visual hull of a frame's masks: the points that no view sees outside its mask.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,29 @@ class VisualHull {
   // when no view has a mask or the hull is empty.
   std::vector<vec3> surfaceCells(float cell_m, const Progress& progress) const;
 
+  // A view denies a cell that it sees inside its picture with no pixel of its mask on it.
+  struct Cell {
+    dvec3 center;
+    int denials = 0;
+    int denier = -1;  // the one view when denials is 1
+  };
+  struct Cells {
+    double half_m = 0;
+    std::vector<Cell> cells;
+  };
+  // The cells that two views see and at most `most_denials` deny, in a fixed order; about `share` of the
+  // subject's size, by the median view's mask, and not below a pixel.
+  Cells cellsDeniedBy(int most_denials, double share, const Progress& progress) const;
+
+  // Half-open, inside the picture.
+  struct PixelBox {
+    int x0, y0, x1, y1;
+  };
+  // Pixels that the cell's surrounding ball may touch; nothing: none, or the camera stands in it. `view`
+  // counts the views with masks.
+  std::optional<PixelBox> footprint(int view, const dvec3& center, double half) const;
+  std::uint32_t insideCount(int view, const PixelBox& box) const;
+
  private:
   struct MaskView {
     dmat3 rotation;
@@ -37,6 +62,10 @@ class VisualHull {
     std::vector<std::uint32_t> integral;  // (width + 1) x (height + 1) counts of inside pixels
   };
   enum class Cover { Outside, Inside, Mixed };
+  static std::optional<PixelBox> boxOf(const MaskView& v, const dvec3& in_camera, double radius);
+  static std::uint32_t insideCount(const MaskView& v, const PixelBox& box);
+  int halvings(const dvec3& center, double half, double share) const;
+  std::optional<Cell> votedCell(const dvec3& center, double half, int most_denials) const;
   Cover classify(const dvec3& center, double half) const;
   void boundingCube(dvec3& center, double& half) const;
 

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/io/file.h"
 #include "core/io/mesh_ply.h"
 #include "core/pipeline/input_digests.h"
 #include "core/stages/builtin_stages.h"
+#include "core/stages/screening_file.h"
+#include "core/stages/training_input.h"
 
 namespace beam {
 namespace {
 
 struct CaptureOptions {
   int downscale = 1;  // pictures are used this many times smaller a side
+  bool screen = true;
 };
 
 void describe(Fields& fields, CaptureOptions& options) {
@@ -21,6 +27,14 @@ void describe(Fields& fields, CaptureOptions& options) {
                 .min = 1,
                 .max = 16},
                options.downscale);
+  fields.group("screen", [&] {
+    fields.field(
+        {.name = "enabled",
+         .label = "Leave bad cameras out",
+         .help = "Cameras that are black, blurred or of another moment are left out of the fit of the "
+                 "frames where they are so: at most a quarter, and at least three remain."},
+        options.screen);
+  });
 }
 
 class CaptureStage final : public StageOf<CaptureOptions> {
@@ -33,12 +47,20 @@ class CaptureStage final : public StageOf<CaptureOptions> {
                                             .title = "Import the capture",
                                             .per_frame = false,
                                             .reads = {Reads::Calibration},
-                                            .weight = 0.1}}};
+                                            .weight = 0.1},
+                                           {.id = "screen",
+                                            .title = "Look for bad cameras",
+                                            .reads = {Reads::Pictures},
+                                            .inputs = {"capture.import"},
+                                            .weight = 0.5}}};
     return kInfo;
   }
 
+  void run(std::string_view step, StepContext& c) const override { step == "import" ? import(c) : screen(c); }
+
+ private:
   // The result holds what was understood; pictures stay where they are.
-  void run(std::string_view, StepContext& c) const override {
+  static void import(StepContext& c) {
     writeFileAtomically(c.folder / "cameras.txt", calibrationText(c.capture));
     if (!c.capture.seed_points.position_m.empty()) {
       writePointsPly(c.folder / "seed_points.ply", c.capture.seed_points);
@@ -53,6 +75,32 @@ class CaptureStage final : public StageOf<CaptureOptions> {
     }
     c.scores["training_cameras"] = train;
     c.scores["test_cameras"] = static_cast<double>(c.capture.views.size()) - train;
+  }
+
+  void screen(StepContext& c) const {
+    FrameScreening kept{options_.screen, 0, {}, {}};
+    Screening found;
+    if (options_.screen) {
+      const std::vector<FrameView> views = readableViews(c);
+      kept.cameras = views.size();
+      found = screenViews(views, {}, c.progress);
+      (found.too_many ? kept.suspects : kept.left_out) = std::move(found.suspects);
+    }
+    std::sort(kept.left_out.begin(), kept.left_out.end(),
+              [](const ScreenedView& a, const ScreenedView& b) { return a.camera < b.camera; });
+    const std::string& frame = c.capture.frames[static_cast<std::size_t>(c.frame.value)];
+    for (const ScreenedView& v : kept.left_out) {
+      logWarning("frame {}: camera {} {}; the frame is fitted without it, from {} of {} cameras", frame,
+                 v.camera, v.text, kept.cameras - kept.left_out.size(), kept.cameras);
+    }
+    for (const ScreenedView& v : kept.suspects) {
+      logWarning(
+          "frame {}: camera {} {}; it is used all the same, because too few of the {} cameras would remain "
+          "without every one like it",
+          frame, v.camera, v.text, kept.cameras);
+    }
+    writeScreening(c.folder, kept, found.figures);
+    c.scores["left_out"] = static_cast<double>(kept.left_out.size());
   }
 };
 

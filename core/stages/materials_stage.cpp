@@ -34,12 +34,12 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                    .title = "Bake maps",
                    .source = "BEAM 3.2, eq. 3 and 20",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "light.import", "surface.refine"},
+                   .inputs = {"capture.import", "capture.screen", "light.import", "surface.refine"},
                    .weight = 20},
                   {.id = "fit",
                    .title = "Fit materials",
                    .source = "BEAM 3.2",
-                   .inputs = {"capture.import", "surface.refine", "materials.bake"},
+                   .inputs = {"capture.import", "capture.screen", "surface.refine", "materials.bake"},
                    .weight = 10}}};
     return kInfo;
   }
@@ -63,13 +63,10 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
 
   void fit(StepContext& c) const {
     const std::filesystem::path folder = c.input("materials.bake") / kMapsFolder;
-    const std::vector<Camera> cameras = trainingCameras(c);
     std::vector<MaterialMaps> maps;
-    std::size_t camera = 0;
-    for (const View& view : c.capture.views) {
-      if (view.split != Split::Train) continue;
-      const Camera& own = cameras[camera++];
-      if (hasMaterialMaps(folder, view.name)) maps.push_back(readMaterialMaps(folder, view.name, own));
+    for (const View& view : trainingCalibration(c)) {
+      if (hasMaterialMaps(folder, view.name))
+        maps.push_back(readMaterialMaps(folder, view.name, view.camera));
     }
     const GaussianCloud cloud = cloudOf(c);
     const Materials materials = fitMaterials(maps, cloud, static_cast<float>(options_.bake.roughness),

@@ -41,10 +41,14 @@ Image<std::uint8_t> cut(const Image<std::uint8_t>& sheet, int x0, int y0) {
   return thumb;
 }
 
+const char* splitOf(const ViewScore& s) { return s.left_out ? "left_out" : s.held_out ? "test" : "train"; }
+
 ViewScore scoreOf(const Json& j) {
   ViewScore s;
   s.camera = j.at("camera").get<std::string>();
-  s.held_out = j.at("split").get<std::string>() == "test";
+  const auto split = j.at("split").get<std::string>();
+  s.held_out = split == "test";
+  s.left_out = split == "left_out";
   s.score = {j.at("psnr").get<double>(), j.at("ssim").get<double>(), j.at("psnr_mask").get<double>()};
   s.photo_luma = j.at("photo_luma").get<double>();
   s.render_luma = j.at("render_luma").get<double>();
@@ -66,7 +70,7 @@ void writeScores(const fs::path& folder, const std::vector<ViewScore>& scores, i
   int y0 = 0;
   for (const ViewScore& s : scores) {
     j["views"].push_back({{"camera", s.camera},
-                          {"split", s.held_out ? "test" : "train"},
+                          {"split", splitOf(s)},
                           {"psnr", s.score.psnr},
                           {"ssim", s.score.ssim},
                           {"psnr_mask", s.score.psnr_mask},

@@ -40,31 +40,31 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .title = "Seed points",
                    .source = "BEAM 3.1",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import"},
+                   .inputs = {"capture.import", "capture.screen"},
                    .weight = 1,
                    .frames = Frames::FirstOfTake},
                   {.id = "fit",
                    .title = "Fit appearance",
                    .source = "BEAM 3.1, eq. 8",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "surface.seed"},
+                   .inputs = {"capture.import", "capture.screen", "surface.seed"},
                    .weight = 45,
                    .later = {.inputs = {"track.joints"}, .previous = {"track.joints", "surface.refine"}}},
                   {.id = "refine",
                    .title = "Refine geometry",
                    .source = "BEAM 3.1, E_normal",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "surface.fit"},
+                   .inputs = {"capture.import", "capture.screen", "surface.fit"},
                    .weight = 45,
                    .later = {.inputs = {"track.joints"}, .previous = {"surface.refine"}}},
                   {.id = "score",
                    .title = "Score against the photographs",
                    .reads = {Reads::Pictures, Reads::HeldOut},
-                   .inputs = {"capture.import", "surface.refine"},
+                   .inputs = {"capture.import", "capture.screen", "surface.refine"},
                    .weight = 2},
                   {.id = "mesh",
                    .title = "Fuse a mesh",
-                   .inputs = {"capture.import", "surface.refine"},
+                   .inputs = {"capture.import", "capture.screen", "surface.refine"},
                    .weight = 4}}};
     return kInfo;
   }
@@ -150,7 +150,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     const GaussianCloud cloud = readSplatPly(c.input("surface.refine") / kCloudFile).cloud;
     std::vector<ViewScore> scores;
     for (const bool held_out : {false, true}) {
-      Progress part = c.progress.part(0.5, held_out ? "held-out views" : "training views");
+      Progress part = c.progress.part(0.48, held_out ? "held-out views" : "training views");
       const std::vector<FrameView> views = held_out ? heldOutViews(c) : trainingViews(c);
       for (ViewScore& s : scoreViews(views, held_out, cloud, c.device, part)) scores.push_back(std::move(s));
       const SplitScore split = meanOf(scores, held_out);
@@ -159,6 +159,11 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
       c.scores["psnr" + name] = split.mean.psnr;
       c.scores["ssim" + name] = split.mean.ssim;
       c.scores["psnr_worst" + name] = scores[split.worst].score.psnr;
+    }
+    Progress part = c.progress.part(0.04, "views left out of the fit");
+    for (ViewScore& s : scoreViews(leftOutViews(c), false, cloud, c.device, part)) {
+      s.left_out = true;
+      scores.push_back(std::move(s));
     }
     writeScores(c.folder, scores, trainingDownscale(c));
   }

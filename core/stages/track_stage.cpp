@@ -54,7 +54,7 @@ class TrackStage final : public StageOf<TrackOptions> {
                    .title = "Track joints",
                    .source = "BEAM 3.1, eq. 9",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import"},
+                   .inputs = {"capture.import", "capture.screen"},
                    .weight = 30,
                    .frames = Frames::InTakes,
                    .later = {.previous = {kJointsStep}}}}};

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/left_out.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace beam {
+namespace {
+
+// "000003-000007, 000009".
+std::string rangesText(const std::vector<std::string>& names, const std::vector<int>& indices) {
+  std::string text;
+  for (std::size_t begin = 0, end = 1; begin < names.size(); begin = end, ++end) {
+    while (end < names.size() && indices[end] == indices[end - 1] + 1) ++end;
+    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", names[begin],
+                        end - begin > 1 ? "-" + names[end - 1] : std::string());
+  }
+  return text;
+}
+
+void add(const ScoredFrame& frame, FitQuality& q) {
+  const SplitScore fitted = meanOf(frame.views, false), held_out = meanOf(frame.views, true);
+  if (fitted.n > 0) q.fitted += fitted.mean.psnr, ++q.frames;
+  if (held_out.n > 0) q.held_out += held_out.mean.psnr, ++q.held_out_frames;
+}
+
+void divide(FitQuality& q) {
+  q.fitted /= std::max(1, q.frames);
+  q.held_out /= std::max(1, q.held_out_frames);
+}
+
+std::string figures(const FitQuality& q) {
+  std::string text = fmt::format("{:.2f} dB over the fitted views", q.fitted);
+  if (q.held_out_frames > 0) text += fmt::format(" and {:.2f} dB over the held-out views", q.held_out);
+  return text;
+}
+
+std::string frameCount(int n) { return fmt::format("{} frame{}", n, n == 1 ? "" : "s"); }
+
+}  // namespace
+
+std::vector<LeftOutCamera> collectLeftOut(std::span<const ScreenedFrame> frames) {
+  std::map<std::pair<std::string, ScreenKind>, LeftOutCamera> found;
+  for (const ScreenedFrame& f : frames) {
+    for (const ScreenedView& v : f.left_out) {
+      LeftOutCamera& c = found[{v.camera, v.kind}];
+      // The least figure of a blurred or black picture is the worst one.
+      const bool worse = v.kind == ScreenKind::Outline ? v.figure > c.figure : v.figure < c.figure;
+      if (c.frames.empty() || worse) c.text = v.text, c.figure = v.figure;
+      c.camera = v.camera, c.kind = v.kind;
+      c.frames.push_back(f.name);
+      c.indices.push_back(f.index);
+    }
+  }
+  std::vector<LeftOutCamera> list;
+  list.reserve(found.size());
+  for (auto& [key, camera] : found) list.push_back(std::move(camera));
+  return list;
+}
+
+std::string toText(const LeftOutCamera& c, std::span<const Defect> defects) {
+  std::string why = c.text;
+  for (const Defect& d : defects) {
+    if (c.kind != ScreenKind::Outline || d.camera != c.camera || d.kind != DefectKind::Late) continue;
+    why += fmt::format("; it {}", d.text.substr(0, d.text.find(':')));
+  }
+  return fmt::format("camera {} in frame{} {}: {}", c.camera, c.frames.size() == 1 ? "" : "s",
+                     rangesText(c.frames, c.indices), why);
+}
+
+LeftOutLoss lossOf(std::span<const ScoredFrame> frames) {
+  LeftOutLoss loss;
+  for (const ScoredFrame& f : frames) {
+    int fitted = 0, left_out = 0;
+    for (const ViewScore& v : f.views) {
+      left_out += v.left_out;
+      fitted += !v.left_out && !v.held_out;
+    }
+    add(f, left_out > 0 ? loss.incomplete : loss.complete);
+    if (left_out == 0 || (loss.of > 0 && fitted >= loss.least_fitted)) continue;
+    loss.least_fitted = fitted;
+    loss.of = fitted + left_out;
+  }
+  divide(loss.incomplete);
+  divide(loss.complete);
+  return loss;
+}
+
+std::string toText(const LeftOutLoss& loss) {
+  if (loss.of == 0) return {};
+  std::string text =
+      fmt::format("{} fitted with cameras left out, from at least {} of {} views: mean PSNR {}",
+                  loss.incomplete.frames == 1 ? "1 frame was" : frameCount(loss.incomplete.frames) + " were",
+                  loss.least_fitted, loss.of, figures(loss.incomplete));
+  if (loss.complete.frames == 0)
+    return text + ". No solved frame is complete, so there is none of this take to compare with.";
+  text += fmt::format("; {} with every camera: {}", frameCount(loss.complete.frames), figures(loss.complete));
+  if (loss.incomplete.held_out_frames > 0 && loss.complete.held_out_frames > 0) {
+    text += fmt::format(". The loss shows in the held-out views: {:+.2f} dB",
+                        loss.incomplete.held_out - loss.complete.held_out);
+  } else {
+    text += ". Without held-out cameras (--hold-out) the loss where no camera looks is not known";
+  }
+  return text + "; the frames show other poses, which is a part of the difference.";
+}
+
+}  // namespace beam

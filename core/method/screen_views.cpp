@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/method/screen_views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "core/method/compare_outlines.h"
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kFewestKept = 3, kViewsPerLeftOut = 4;
+constexpr std::uint8_t kInside = 128;
+// The bright part is what one pixel in so many is brighter than; a small subject before black has few.
+constexpr std::size_t kBrightPart = 20, kBrightPartOfAll = 1000;
+constexpr double kFineShare = 0.01;  // of the subject's size, the square root of its area
+constexpr int kCoarser = 4;
+constexpr int kFewestSamples = 48;      // gradients that a mean needs
+constexpr double kLeastContrast = 1.0;  // mean coarse gradient, grey levels: below there is no detail to lose
+
+// The value that `share` of the others lie below.
+double quantile(std::vector<double> v, double share) {
+  if (v.empty()) return 0;
+  const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size()));
+  std::nth_element(v.begin(), at, v.end());
+  return *at;
+}
+
+double median(std::vector<double> v) { return quantile(std::move(v), 0.5); }
+
+double lumaOf(u8vec3 p) { return 0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z; }
+
+bool saysSomething(const Image<std::uint8_t>& mask) {
+  return std::any_of(mask.pixels.begin(), mask.pixels.end(), [](std::uint8_t m) { return m >= kInside; });
+}
+
+double brightPart(const FrameView& v) {
+  const bool masked = saysSomething(v.mask);
+  std::vector<std::size_t> histogram(256, 0);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < v.photo.pixels.size(); ++i) {
+    if (masked && v.mask.pixels[i] < kInside) continue;
+    ++histogram[static_cast<std::size_t>(std::lround(lumaOf(v.photo.pixels[i])))];
+    ++count;
+  }
+  const std::size_t part = masked ? kBrightPart : kBrightPartOfAll;
+  std::size_t above = 0;
+  for (int level = 255; level >= 0; --level) {
+    above += histogram[static_cast<std::size_t>(level)];
+    if (part * above >= count) return level / 255.0;
+  }
+  return 0;
+}
+
+// Mean length of luma's gradient where the neighbours are wholly inside, in grey levels a pixel; negative:
+// too few pixels.
+double meanGradient(const FrameView& v) {
+  const auto inside = [&](int x, int y) { return v.mask(x, y) == 255; };
+  double sum = 0;
+  int n = 0;
+  for (int y = 1; y + 1 < v.photo.height; ++y) {
+    for (int x = 1; x + 1 < v.photo.width; ++x) {
+      if (!inside(x - 1, y) || !inside(x + 1, y) || !inside(x, y - 1) || !inside(x, y + 1)) continue;
+      sum += std::hypot(lumaOf(v.photo(x + 1, y)) - lumaOf(v.photo(x - 1, y)),
+                        lumaOf(v.photo(x, y + 1)) - lumaOf(v.photo(x, y - 1))) /
+             2;
+      ++n;
+    }
+  }
+  return n < kFewestSamples ? -1 : sum / n;
+}
+
+double detailOf(const FrameView& view) {
+  if (!view.mask.empty() && !saysSomething(view.mask)) return 0;
+  FrameView v = view;
+  if (v.mask.empty()) v.mask = Image<std::uint8_t>(v.photo.width, v.photo.height, 255);
+  const auto area =
+      std::count_if(v.mask.pixels.begin(), v.mask.pixels.end(), [](std::uint8_t m) { return m >= kInside; });
+  const int fine =
+      std::max(1, static_cast<int>(std::lround(kFineShare * std::sqrt(static_cast<double>(area)))));
+  const double near = meanGradient(shrunk(v, fine)), far = meanGradient(shrunk(v, fine * kCoarser));
+  return near < 0 || far < kLeastContrast ? 0 : near / far;
+}
+
+class Screener {
+ public:
+  Screener(std::span<const FrameView> views, const ScreenLimits& limits, const Progress& progress)
+      : views_(views), limits_(limits), progress_(progress), suspect_(views.size(), false) {
+    found_.figures.resize(views.size());
+  }
+
+  Screening screen() {
+    measure();
+    if (views_.size() <= kFewestKept) return std::move(found_);
+    black();
+    blurred();
+    outlines();
+    const std::size_t bad = found_.suspects.size();
+    found_.too_many = bad > mostLeftOut();
+    return std::move(found_);
+  }
+
+ private:
+  std::size_t mostLeftOut() const {
+    return std::min(views_.size() / kViewsPerLeftOut, views_.size() - kFewestKept);
+  }
+
+  void measure() {
+    parallelFor(views_.size(), 1, [&](std::size_t i, std::size_t) {
+      if (progress_.stopRequested()) return;
+      found_.figures[i] = {views_[i].name, brightPart(views_[i]), detailOf(views_[i]), 0};
+    });
+    progress_.check();
+  }
+
+  void accuse(std::size_t view, ScreenKind kind, double figure, std::string text) {
+    suspect_[view] = true;
+    found_.suspects.push_back({views_[view].name, kind, figure, std::move(text)});
+  }
+
+  void black() {
+    std::vector<double> all;
+    for (const ScreenFigures& f : found_.figures) all.push_back(f.bright);
+    const double usual = median(all);
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      const double bright = found_.figures[i].bright;
+      if (bright > limits_.black_luma || bright >= limits_.black_share * usual) continue;
+      accuse(i, ScreenKind::Black, bright,
+             fmt::format("is black: the bright part of its picture has a luma of {:.3f}, that of the median "
+                         "camera {:.2f}",
+                         bright, usual));
+    }
+  }
+
+  void blurred() {
+    std::vector<double> all;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      if (!suspect_[i] && found_.figures[i].detail > 0) all.push_back(found_.figures[i].detail);
+    }
+    if (all.size() <= kFewestKept) return;
+    const double usual = median(all);
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      const double share = found_.figures[i].detail / usual;
+      if (suspect_[i] || share <= 0 || share > limits_.blurred_share) continue;
+      accuse(i, ScreenKind::Blurred, share,
+             fmt::format("is blurred: it has {:.0f} % of the fine detail of the median camera", 100 * share));
+    }
+  }
+
+  // A camera of another moment disturbs the others' figures too: one at a time, the worst first.
+  void outlines() {
+    for (bool first = true; found_.suspects.size() <= mostLeftOut(); first = false) {
+      std::vector<FrameView> rest;
+      std::vector<std::size_t> index;
+      for (std::size_t i = 0; i < views_.size(); ++i) {
+        if (suspect_[i] || views_[i].mask.empty()) continue;
+        rest.push_back(views_[i]);
+        index.push_back(i);
+      }
+      if (rest.size() <= kFewestKept) return;
+      const std::vector<OutlineFit> fits = compareOutlines(rest, progress_);
+      std::vector<double> all;
+      std::size_t worst = 0;
+      for (std::size_t i = 0; i < fits.size(); ++i) {
+        all.push_back(fits[i].denied + fits[i].alone);
+        if (all[i] > all[worst]) worst = i;
+        if (first) found_.figures[index[i]].outline = all[i];
+      }
+      const double figure = all[worst];
+      if (figure < limits_.outline_share || figure < limits_.outline_times * quantile(all, 0.75)) return;
+      accuse(index[worst], ScreenKind::Outline, figure,
+             fmt::format("has an outline that the other cameras contradict in {:.1f} % of its mask: another "
+                         "moment, a moved camera or a wrong mask",
+                         100 * figure));
+    }
+  }
+
+  std::span<const FrameView> views_;
+  const ScreenLimits& limits_;
+  const Progress& progress_;
+  std::vector<bool> suspect_;
+  Screening found_;
+};
+
+}  // namespace
+
+const char* toText(ScreenKind kind) {
+  switch (kind) {
+    case ScreenKind::Black:
+      return "black";
+    case ScreenKind::Blurred:
+      return "blurred";
+    case ScreenKind::Outline:
+      return "outline";
+  }
+  return "";
+}
+
+Screening screenViews(std::span<const FrameView> views, const ScreenLimits& limits,
+                      const Progress& progress) {
+  return Screener(views, limits, progress).screen();
+}
+
+}  // namespace beam
