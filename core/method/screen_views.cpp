@@ -19,7 +19,7 @@ constexpr std::uint8_t kInside = 128;
 constexpr std::size_t kBrightPart = 20, kBrightPartOfAll = 1000;
 constexpr double kFineShare = 0.01;  // of the subject's size, the square root of its area
 constexpr int kCoarser = 4;
-constexpr int kFewestSamples = 48;      // gradients that a mean needs
+constexpr int kFewestSamples = 32;      // gradients that a mean needs
 constexpr double kLeastContrast = 1.0;  // mean coarse gradient, grey levels: below there is no detail to lose
 
 // The value that `share` of the others lie below.
