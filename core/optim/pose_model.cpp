@@ -37,14 +37,6 @@ void PoseModel::step(const PoseGradient& gradient, float position_rate_m, float 
   setPose(values_, pose_);
 }
 
-Pose poseOf(const GaussianCloud& cloud) { return {cloud.position_m, cloud.rotation}; }
-
-void setPose(GaussianCloud& cloud, const Pose& pose) {
-  cloud.position_m = pose.position_m;
-  cloud.rotation = pose.rotation;
-  for (quat& q : cloud.rotation) q = glm::normalize(q);
-}
-
 void setPose(GaussianBuffers& buffers, const Pose& pose) {
   parallelFor(pose.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -21,9 +21,7 @@ class PoseModel {
   GaussianBuffers values_, gradient_, first_moment_, second_moment_;
 };
 
-// The pose of a cloud, and the planes that hold it.
-Pose poseOf(const GaussianCloud& cloud);
-void setPose(GaussianCloud& cloud, const Pose& pose);
+// The planes that hold a pose.
 void setPose(GaussianBuffers& buffers, const Pose& pose);
 void readPose(const GaussianBuffers& buffers, Pose& pose);
 // From dL/d(planes); adds.

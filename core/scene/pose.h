@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/math/types.h"
+#include "core/scene/gaussian_cloud.h"
 
 namespace beam {
 
@@ -15,5 +15,8 @@ struct Pose {
 
   std::size_t size() const { return position_m.size(); }
 };
+
+Pose poseOf(const GaussianCloud& cloud);
+void setPose(GaussianCloud& cloud, const Pose& pose);  // normalises
 
 }  // namespace beam

@@ -6,7 +6,6 @@
 #include "core/method/fit_surface.h"
 #include "core/method/follow_surface.h"
 #include "core/method/score_views.h"
-#include "core/optim/pose_model.h"
 #include "core/pipeline/frame_result.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/score_files.h"

@@ -6,7 +6,6 @@
 #include "core/io/splat_ply.h"
 #include "core/method/fit_surface.h"
 #include "core/method/track_joints.h"
-#include "core/optim/pose_model.h"
 #include "core/pipeline/frame_result.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/track_files.h"

@@ -109,7 +109,7 @@ TEST(IncludeLaw, ForeignWordsStayInTheirRooms) {
       {{"GL/"}, {"viewers/"}},
       {{"nlohmann/"},
        {"core/base/fields_json", "core/io/", "core/pipeline/", "core/sample/", "core/stages/score_files",
-        "app/", "ui/"}},
+        "core/stages/screening_file", "core/stages/track_files", "app/", "ui/"}},
       {{"opencv2/"}, {"core/io/", "core/image/"}},
       {{"Imf", "OpenEXR/", "Imath"}, {"core/io/"}},
       {{"embree"}, {"core/render/cpu/embree_tracer.cpp", "core/sample/"}},
