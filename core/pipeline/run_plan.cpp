@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -36,6 +38,7 @@ void sortByTakes(const Project& project, std::vector<FrameIndex>& frames) {
     return begins.try_emplace({take.first.value, take.last.value, take.step}, frame).first->second;
   };
   std::vector<std::pair<FrameIndex, FrameIndex>> order;
+  order.reserve(frames.size());
   for (const FrameIndex frame : frames) order.emplace_back(beginOf(frame), frame);
   std::sort(order.begin(), order.end());
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i] = order[i].second;
