@@ -57,13 +57,15 @@ std::vector<StageStatus> statusOf(const TakeSurvey& survey, const std::vector<St
   std::vector<StageStatus> all;
   for (std::size_t i = 0; i < survey.lanes.size(); ++i) {
     const SurveyLane& lane = survey.lanes[i];
-    StageStatus status{
-        .id = lane.stage,
-        .title = QString::fromStdString(lane.title),
-        .summary = QString::fromStdString(infos[i].summary),
-        .done = static_cast<int>(std::count(lane.cells.begin(), lane.cells.end(), CellState::Done)),
-        .frames = static_cast<int>(lane.cells.size()),
-        .detail = QString::fromStdString(lane.blocked_reason)};
+    const auto count = [&](CellState state) {
+      return static_cast<int>(std::count(lane.cells.begin(), lane.cells.end(), state));
+    };
+    StageStatus status{.id = lane.stage,
+                       .title = QString::fromStdString(lane.title),
+                       .summary = QString::fromStdString(infos[i].summary),
+                       .done = count(CellState::Done),
+                       .frames = static_cast<int>(lane.cells.size()) - count(CellState::NotNeeded),
+                       .detail = QString::fromStdString(lane.blocked_reason)};
     const auto f = static_cast<std::size_t>(shown.value);
     if (f < lane.cells.size()) {
       status.state = stateOf(lane.cells[f]);

@@ -19,7 +19,7 @@ struct StageStatus {
   std::string id;
   QString title, summary;
   StepState state = StepState::Pending;  // of the current frame
-  int done = 0, frames = 0;              // frames that are done
+  int done = 0, frames = 0;              // frames that are done, and those that the stage is for
   bool stale = false;                    // to do, and there is a result of other settings
   QString detail;                        // why it is blocked or failed
 };
