@@ -17,7 +17,7 @@ struct RunRequest {
   std::vector<FrameIndex> frames = {};
   std::string stage = {};  // only this stage and what it needs; empty: every stage
   std::string until = {};  // the last stage; empty: the last there is
-  int every = 1;           // only every so-manieth frame, each building on the one that many before
+  int every = 1;           // K: only every Kth frame, each building on the one K before
   // Of a whole run: the longest take it makes, 0: no longest; absent: the setting track.segment_frames.
   std::optional<int> segment_frames = {};
 };
