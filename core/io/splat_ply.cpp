@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/io/ply_file.h"
+#include "core/math/sh_rotation.h"
 
 namespace beam {
 namespace {
@@ -110,64 +111,11 @@ struct ShColumns {
   }
 };
 
-// Band by band, the matrix that turns coefficients so that value'(R d) = value(d): solved from sample
-// directions, exact to rounding since a band is closed under rotation.
-struct ShRotation {
-  double band[4][7][7];
-};
-
-void solveBand(int l, const dmat3& rotation, double (&out)[7][7]) {
-  const int n = 2 * l + 1, first = l * l;
-  double a[7][14] = {};
-  // Normal equations over well-spread directions: B(R d)^T B(R d) X = B(R d)^T B(d).
-  constexpr int kDirections = 64;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z), phi = 2.399963229728653 * i;
-    const dvec3 d(r * std::cos(phi), r * std::sin(phi), z);
-    const auto from = shBasis(vec3(d)), to = shBasis(vec3(rotation * d));
-    for (int p = 0; p < n; ++p) {
-      for (int q = 0; q < n; ++q) {
-        a[p][q] += double(to[first + p]) * to[first + q];
-        a[p][n + q] += double(to[first + p]) * from[first + q];
-      }
-    }
-  }
-  for (int p = 0; p < n; ++p) {  // Gauss-Jordan; the matrix is well conditioned
-    const double pivot = a[p][p];
-    for (int q = 0; q < 2 * n; ++q) a[p][q] /= pivot;
-    for (int r = 0; r < n; ++r) {
-      if (r == p) continue;
-      const double f = a[r][p];
-      for (int q = 0; q < 2 * n; ++q) a[r][q] -= f * a[p][q];
-    }
-  }
-  for (int p = 0; p < n; ++p) {
-    for (int q = 0; q < n; ++q) {
-      const double v = a[p][n + q];
-      // Signed permutations give whole numbers and halves of roots; only rounding noise around 0 and 1 is
-      // cleaned.
-      out[p][q] = std::abs(v) < 1e-6 ? 0 : std::abs(std::abs(v) - 1) < 1e-6 ? std::copysign(1.0, v) : v;
-    }
-  }
-}
-
 ShBlock rotatedSh(const ShBlock& in, const dmat3& rotation) {
-  ShRotation m{};
-  for (int l = 1; l <= 3; ++l) solveBand(l, rotation, m.band[l]);
+  const ShRotation turn(rotation);
   ShBlock out = in;
   const std::size_t n = in.coefficients.size() / (static_cast<std::size_t>(kShCount) * in.channels);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int l = 1; l <= 3; ++l) {
-      for (int p = 0; p < 2 * l + 1; ++p) {
-        for (int c = 0; c < in.channels; ++c) {
-          double sum = 0;
-          for (int q = 0; q < 2 * l + 1; ++q)
-            sum += m.band[l][p][q] * in.of(i)[(l * l + q) * in.channels + c];
-          out.of(i)[(l * l + p) * in.channels + c] = static_cast<float>(sum);
-        }
-      }
-    }
-  }
+  for (std::size_t i = 0; i < n; ++i) turn.apply(in.channels, in.of(i), out.of(i));
   return out;
 }
 

@@ -81,11 +81,22 @@ void addRegularization(const GaussianBuffers& values, float strength, GaussianBu
   }
 }
 
+void addTemporal(const GaussianBuffers& values, const ShBlock& before, float weight,
+                 GaussianBuffers& gradients) {
+  if (weight == 0) return;
+  for (int k = 0; k < kShCount * 3; ++k) {
+    const float* v = values.plane(PlaneLayout::kSh + k);
+    float* g = gradients.plane(PlaneLayout::kSh + k);
+    parallelFor(values.count, 1 << 14, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) g[i] += 2 * weight * (v[i] - before.of(i)[k]);
+    });
+  }
+}
+
 }  // namespace
 
-ShBlock fitDescent(std::span<const MaterialMaps> maps, MapKind kind, const GaussianCloud& cloud,
-                   ShBlock start, const FitMaterialsOptions& options, ComputeDevice& device,
-                   Progress& progress) {
+ShBlock fitDescent(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const ShBlock& start,
+                   const DescentOptions& options, ComputeDevice& device, Progress& progress) {
   GaussianBuffers values = toBuffers(cloud), gradients(cloud.size()), first(cloud.size()),
                   second(cloud.size());
   toPlanes(start, values);
@@ -94,12 +105,12 @@ ShBlock fitDescent(std::span<const MaterialMaps> maps, MapKind kind, const Gauss
     rates[p].learning_rate = p < PlaneLayout::kSh + 3 ? kDcRate : kRestRate;
   }
   const auto ops = device.newTrainingOps();
-  Loss loss(kind, *ops);
+  Loss loss(options.kind, *ops);
   std::unique_ptr<Rasterizer> rasterizer;
   RasterImages images, upstream;
-  const RandomStream choice(1, 0x666974, static_cast<int>(kind));
-  progress.expect(options.adam_iterations);
-  for (int step = 1; step <= options.adam_iterations; ++step) {
+  const RandomStream choice(1, 0x666974, static_cast<int>(options.kind));
+  progress.expect(options.iterations);
+  for (int step = 1; step <= options.iterations; ++step) {
     progress.step();
     const MaterialMaps& m = maps[choice.below(step, maps.size())];
     if (!rasterizer || rasterizer->desc().width != m.camera.width ||
@@ -111,12 +122,14 @@ ShBlock fitDescent(std::span<const MaterialMaps> maps, MapKind kind, const Gauss
     upstream.color = loss.gradient(images, m);
     rasterizer->backward(upstream, gradients);
     addRegularization(values, static_cast<float>(options.regularization), gradients);
+    addTemporal(values, start, static_cast<float>(options.temporal_weight), gradients);
     ops->adam(values, gradients, first, second, rates, {}, step);
   }
+  ShBlock found(cloud.size(), 3);
   for (std::size_t i = 0; i < values.count; ++i) {
-    for (int k = 0; k < kShCount * 3; ++k) start.of(i)[k] = values.plane(PlaneLayout::kSh + k)[i];
+    for (int k = 0; k < kShCount * 3; ++k) found.of(i)[k] = values.plane(PlaneLayout::kSh + k)[i];
   }
-  return start;
+  return found;
 }
 
 }  // namespace beam

@@ -13,10 +13,16 @@ namespace beam {
 
 enum class MapKind { BaseColor, AmbientOcclusion };
 
+struct DescentOptions {
+  MapKind kind;
+  int iterations;
+  double regularization;   // on the view-dependent coefficients
+  double temporal_weight;  // lambda_temp: times the sum of squared changes since `start` (BEAM eq. 10)
+};
+
 // Three channels a Gaussian: [(gaussian * kShCount + k) * 3 + c]; AO's are three times the same. Starts from
 // `start`.
-ShBlock fitDescent(std::span<const MaterialMaps> maps, MapKind kind, const GaussianCloud& cloud,
-                   ShBlock start, const FitMaterialsOptions& options, ComputeDevice& device,
-                   Progress& progress);
+ShBlock fitDescent(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const ShBlock& start,
+                   const DescentOptions& options, ComputeDevice& device, Progress& progress);
 
 }  // namespace beam

@@ -20,6 +20,7 @@ constexpr float kSlopeFloor = 0.01f;              // linear; below it the eye's 
 constexpr float kSeen = 0.05f;                    // sum of blend weights (pixels) that makes a Gaussian seen
 constexpr float kPrior = 1e-4f;                   // pull towards the first guess, of what the pictures say
 constexpr float kPriorPixels = 0.003f;            // and at least as much as this many pixels would say
+constexpr float kLeanPixels = 1;                  // evidence of the frame before that no Gaussian is without
 constexpr int kNeighbors = 4;                     // seen Gaussians that lend their colour to an unseen one
 constexpr double kConverged = 1e-10;              // of the squared residual
 constexpr std::size_t kGrain = 2048;              // Gaussians a piece
@@ -157,6 +158,28 @@ class NormalEquations {
     return x;
   }
 
+  // Adds memory * kShC0^2 * evidence * |x - before|^2 (kShC0^2: the mean over directions of every basis
+  // function's square), so that what many Gaussians share becomes (seen + memory * before) / (1 + memory):
+  // the unit of memory is a frame's evidence, whatever the number of pixels and Gaussians. Where the pictures
+  // contradict by more than `outlier` (a Gaussian that slid onto another cloth), memory fades.
+  // Returns the right-hand side for a step away from `before`.
+  MaterialCoefficients holdTo(const MaterialCoefficients& before, vec4 memory, float outlier) {
+    MaterialCoefficients r = residual(before);
+    tie_.resize(cloud_.size());
+    for (std::size_t i = 0; i < tie_.size(); ++i) {
+      const vec4 evidence = row_sum_[i] + kLeanPixels * typical_;
+      const vec4 shift = contradiction(i, r[i * kShCount] / kShC0) / outlier;
+      const vec4 doubt = 1.0f + shift * shift;
+      tie_[i] = kShC0 * kShC0 * memory * evidence / (doubt * doubt);
+    }
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      // View-dependence is pulled towards 0 as well.
+      if (i % kShCount != 0) r[i] -= pull(i) * before[i];
+      diagonal_[i] += tie_[i / kShCount];
+    }
+    return r;
+  }
+
   // B^T W^T D (target - 0.5 alpha - W B x): the right-hand side for a step away from x.
   MaterialCoefficients residual(const MaterialCoefficients& x) const {
     MaterialCoefficients r(x.size(), vec4(0));
@@ -174,7 +197,10 @@ class NormalEquations {
   MaterialCoefficients times(const MaterialCoefficients& p) const {
     MaterialCoefficients q(p.size());
     parallelFor(p.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) q[i] = pull(i) * p[i];
+      for (std::size_t i = begin; i < end; ++i) {
+        q[i] = pull(i) * p[i];
+        if (!tie_.empty()) q[i] += tie_[i / kShCount] * p[i];
+      }
     });
     const auto evaluate = [&](std::size_t i, const std::array<float, kShCount>& b) { return at(p, i, b); };
     forViews([&](const ViewEquations& v, std::vector<vec4>& out) { misfit(v, out, evaluate, false); },
@@ -193,6 +219,19 @@ class NormalEquations {
   vec4 pull(std::size_t i) const {
     const float share = i % kShCount == 0 ? kPrior : regularization_;
     return share * row_sum_[i / kShCount] + kPriorPixels * typical_;
+  }
+
+  // How far the pictures want Gaussian i from where it is, as seen (sRGB-encoded; AO as it is): the worst
+  // channel's for all of base colour, so that its hue does not split. `misfit`: importance-weighted sum.
+  vec4 contradiction(std::size_t i, vec4 misfit) const {
+    vec4 apart(0);
+    for (int c = 0; c < 4; ++c) {
+      if (!(row_sum_[i][c] > 0)) continue;
+      const float slope = c < 3 ? srgbSlope(std::max(mean_[i][c] / row_sum_[i][c], kSlopeFloor)) : 1.0f;
+      apart[c] = slope * std::abs(misfit[c]) / row_sum_[i][c];
+    }
+    const float worst = std::max({apart.x, apart.y, apart.z});
+    return {worst, worst, worst, apart.w};
   }
 
   // Mean importance of a pixel that has any.
@@ -296,6 +335,7 @@ class NormalEquations {
   std::vector<ViewEquations> views_;
   std::vector<vec4> row_sum_, coverage_, mean_;  // of importance w, of w where seen, of importance w target
   std::vector<vec4> diagonal_;
+  std::vector<vec4> tie_;  // to the frame before, of every Gaussian; empty: none
   vec4 typical_ = vec4(0);
 };
 
@@ -323,11 +363,13 @@ void forAll(std::size_t count, Body&& body) {
   });
 }
 
-// Preconditioned conjugate gradients, four systems abreast, from x in place.
-void descend(const NormalEquations& a, MaterialCoefficients& x, int iterations, Progress& progress) {
+// Preconditioned conjugate gradients, four systems abreast, from x in place; r: the right-hand side for a
+// step away from x.
+void descend(const NormalEquations& a, MaterialCoefficients& x, MaterialCoefficients r, int iterations,
+             Progress& progress) {
   progress.expect(iterations);
   const std::vector<vec4>& diagonal = a.diagonal();
-  MaterialCoefficients r = a.residual(x), z(r.size()), p;
+  MaterialCoefficients z(r.size()), p;
   const auto precondition = [&] {
     forAll(r.size(), [&](std::size_t i) {
       for (int c = 0; c < 4; ++c) z[i][c] = diagonal[i][c] > 0 ? r[i][c] / diagonal[i][c] : 0.0f;
@@ -357,14 +399,21 @@ void descend(const NormalEquations& a, MaterialCoefficients& x, int iterations, 
 }  // namespace
 
 MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
-                               const FitMaterialsOptions& options, ComputeDevice& device,
-                               Progress& progress) {
+                               const MaterialCoefficients* before, const FitMaterialsOptions& options,
+                               ComputeDevice& device, Progress& progress) {
   Progress collecting = progress.part(0.3, "collecting blend weights");
-  const NormalEquations equations(maps, cloud, static_cast<float>(options.regularization), device,
-                                  collecting);
-  MaterialCoefficients x = equations.firstGuess();
+  NormalEquations equations(maps, cloud, static_cast<float>(options.regularization), device, collecting);
+  MaterialCoefficients x = before ? *before : equations.firstGuess();
   Progress solving = progress.part(0.7, "solving for materials");
-  descend(equations, x, options.linear_iterations, solving);
+  if (before) {
+    const LaterMaterialsOptions& later = options.later;
+    vec4 memory(static_cast<float>(later.memory_frames));
+    memory.w = static_cast<float>(later.occlusion_memory_frames);
+    MaterialCoefficients r = equations.holdTo(x, memory, static_cast<float>(later.outlier));
+    descend(equations, x, std::move(r), later.linear_iterations, solving);
+  } else {
+    descend(equations, x, equations.residual(x), options.linear_iterations, solving);
+  }
   return x;
 }
 

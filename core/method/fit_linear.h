@@ -15,7 +15,10 @@ namespace beam {
 // that share their matrix's pattern.
 using MaterialCoefficients = std::vector<vec4>;
 
+// `before`: of the same Gaussians in the frame before, turned with them, or null. The solve starts there and
+// is held to it as options.later says; null: starts from the pictures.
 MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
-                               const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress);
+                               const MaterialCoefficients* before, const FitMaterialsOptions& options,
+                               ComputeDevice& device, Progress& progress);
 
 }  // namespace beam

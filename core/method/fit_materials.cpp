@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/method/fit_materials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/math/color.h"
+#include "core/math/sh_rotation.h"
 #include "core/method/fit_descent.h"
 #include "core/method/fit_linear.h"
 
@@ -23,28 +27,78 @@ ShBlock fromRadiance(const GaussianCloud& cloud) {
   return block;
 }
 
-void fitByDescent(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+ShBlock tripled(const ShBlock& one) {
+  ShBlock block(one.coefficients.size() / kShCount, 3);
+  for (std::size_t i = 0; i < block.coefficients.size(); ++i) block.coefficients[i] = one.coefficients[i / 3];
+  return block;
+}
+
+// `before`: turned to this frame, or null.
+void fitByDescent(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const Materials* before,
                   const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress,
                   Materials& out) {
+  const double weight = before ? options.later.temporal_weight : 0;
+  const int steps = before ? options.later.adam_iterations : options.adam_iterations;
+  const double regularization = options.regularization;
   Progress color_part = progress.part(0.5, "fitting base colour");
-  out.base_color =
-      fitDescent(maps, MapKind::BaseColor, cloud, fromRadiance(cloud), options, device, color_part);
+  out.base_color = fitDescent(maps, cloud, before ? before->base_color : fromRadiance(cloud),
+                              {MapKind::BaseColor, steps, regularization, weight}, device, color_part);
   Progress occlusion_part = progress.part(0.5, "fitting ambient occlusion");
-  const ShBlock occlusion = fitDescent(maps, MapKind::AmbientOcclusion, cloud, ShBlock(cloud.size(), 3),
-                                       options, device, occlusion_part);
+  const ShBlock occlusion =
+      fitDescent(maps, cloud, before ? tripled(before->ambient_occlusion) : ShBlock(cloud.size(), 3),
+                 {MapKind::AmbientOcclusion, steps, regularization, 0}, device, occlusion_part);
   for (std::size_t i = 0; i < out.ambient_occlusion.coefficients.size(); ++i) {
     out.ambient_occlusion.coefficients[i] = occlusion.coefficients[i * 3];
   }
 }
 
-void fitByLinearSolve(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+MaterialCoefficients coefficientsOf(const Materials& m) {
+  MaterialCoefficients x(m.ambient_occlusion.coefficients.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const float* color = m.base_color.coefficients.data() + i * 3;
+    x[i] = {color[0], color[1], color[2], m.ambient_occlusion.coefficients[i]};
+  }
+  return x;
+}
+
+void fitByLinearSolve(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const Materials* before,
                       const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress,
                       Materials& out) {
-  const MaterialCoefficients x = fitLinear(maps, cloud, options, device, progress);
+  const bool held = options.later.memory_frames > 0 || options.later.occlusion_memory_frames > 0;
+  MaterialCoefficients start;
+  if (before && held) start = coefficientsOf(*before);
+  const MaterialCoefficients x =
+      fitLinear(maps, cloud, start.empty() ? nullptr : &start, options, device, progress);
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (int c = 0; c < 3; ++c) out.base_color.coefficients[i * 3 + c] = x[i][c];
     out.ambient_occlusion.coefficients[i] = x[i].w;
   }
+}
+
+Materials fit(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const Materials* before,
+              const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress,
+              std::vector<float> roughness) {
+  if (maps.empty())
+    throw Error(Error::Kind::Data, "material fit: expected the maps of at least one view, found none");
+  Materials out{std::move(roughness), ShBlock(cloud.size(), 3), ShBlock(cloud.size(), 1)};
+  const auto by = options.solver == "linear" ? fitByLinearSolve : fitByDescent;
+  by(maps, cloud, before, options, device, progress, out);
+  return out;
+}
+
+// A Gaussian's view-dependence is fixed in world axes, what it was fitted to is fixed to the body: it is seen
+// from the side that the normal faces, and that side turns.
+Materials turnedTo(const GaussianCloud& cloud, const EarlierFrame& before) {
+  Materials out = before.materials;
+  parallelFor(cloud.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const dquat turn = dquat(cloud.rotation[i]) * glm::conjugate(dquat(before.cloud.rotation[i]));
+      const ShRotation rotation(glm::mat3_cast(glm::normalize(turn)));
+      rotation.apply(3, before.materials.base_color.of(i), out.base_color.of(i));
+      rotation.apply(1, before.materials.ambient_occlusion.of(i), out.ambient_occlusion.of(i));
+    }
+  });
+  return out;
 }
 
 }  // namespace
@@ -77,18 +131,76 @@ void describe(Fields& f, FitMaterialsOptions& o) {
           o.regularization);
 }
 
+void describe(Fields& f, LaterMaterialsOptions& o) {
+  f.field(
+      {.name = "memory_frames",
+       .label = "Memory",
+       .help =
+           "Linear solver: as how many frames' pictures the base colour of the frame before counts; raise "
+           "it when base colour flickers, 0 (and 0 for occlusion): every frame by itself.",
+       .min = 0,
+       .max = 100,
+       .unit = "frames"},
+      o.memory_frames);
+  f.field(
+      {.name = "occlusion_memory_frames",
+       .label = "Occlusion memory",
+       .help = "Linear solver: the same of ambient occlusion, which changes with the pose; too much makes it "
+               "lag.",
+       .min = 0,
+       .max = 100,
+       .unit = "frames",
+       .advanced = true},
+      o.occlusion_memory_frames);
+  f.field({.name = "outlier",
+           .label = "Outlier",
+           .help = "Linear solver: memory fades where the pictures contradict it by more than this (1: black "
+                   "against white).",
+           .min = 0.001,
+           .max = 100,
+           .advanced = true},
+          o.outlier);
+  f.field({.name = "linear_iterations",
+           .label = "Linear iterations, later frames",
+           .help = "Steps of conjugate gradients of a frame that starts from the frame before.",
+           .min = 0,
+           .max = 1000,
+           .advanced = true},
+          o.linear_iterations);
+  f.field({.name = "temporal_weight",
+           .label = "Temporal weight",
+           .help = "Adam: pull of base colour towards the frame before; the paper takes 5e-5 (eq. 10).",
+           .min = 0,
+           .max = 1,
+           .advanced = true},
+          o.temporal_weight);
+  f.field({.name = "adam_iterations",
+           .label = "Adam iterations, later frames",
+           .help = "Steps of a frame that starts from the frame before.",
+           .min = 1,
+           .max = 1e6,
+           .advanced = true},
+          o.adam_iterations);
+}
+
 Materials fitMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, float roughness,
                        const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress) {
-  if (maps.empty())
-    throw Error(Error::Kind::Data, "material fit: expected the maps of at least one view, found none");
-  Materials out{std::vector<float>(cloud.size(), roughness), ShBlock(cloud.size(), 3),
-                ShBlock(cloud.size(), 1)};
-  if (options.solver == "linear") {
-    fitByLinearSolve(maps, cloud, options, device, progress, out);
-  } else {
-    fitByDescent(maps, cloud, options, device, progress, out);
+  return fit(maps, cloud, nullptr, options, device, progress, std::vector<float>(cloud.size(), roughness));
+}
+
+Materials fitLaterMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+                            const EarlierFrame& before, const FitMaterialsOptions& options,
+                            ComputeDevice& device, Progress& progress) {
+  const std::size_t n = cloud.size();
+  if (before.cloud.size() != n || before.materials.roughness.size() != n) {
+    throw Error(
+        Error::Kind::Bug,
+        fmt::format("a later frame's {} Gaussians must be those of the frame before, which has {} and "
+                    "materials of {}",
+                    n, before.cloud.size(), before.materials.roughness.size()));
   }
-  return out;
+  const Materials turned = turnedTo(cloud, before);
+  return fit(maps, cloud, &turned, options, device, progress, turned.roughness);
 }
 
 }  // namespace beam

@@ -11,15 +11,40 @@
 
 namespace beam {
 
+// Of frames that follow another in a take.
+struct LaterMaterialsOptions {
+  double memory_frames = 4;  // linear: what the frame before counts for, in frames' evidence
+  double occlusion_memory_frames =
+      0.4;                        // linear: the same of AO, which really changes: a tenth (methods 5.10)
+  double outlier = 0.1;           // linear: contradiction that halves and more the memory, sRGB
+  int linear_iterations = 12;     // the start is near
+  double temporal_weight = 5e-5;  // adam: lambda_temp of eq. 10, base colour only
+  int adam_iterations = 1500;     // methods 5.10
+};
+
 struct FitMaterialsOptions {
   std::string solver = "adam";   // "adam": the paper's 5,000 steps each; "linear": conjugate gradients
   int adam_iterations = 5000;    // BEAM 3.2
   int linear_iterations = 30;    // conjugate-gradient steps
   double regularization = 1e-4;  // on the view-dependent coefficients (methods 5.10)
+  LaterMaterialsOptions later = {};
 };
 void describe(Fields& fields, FitMaterialsOptions& options);
+void describe(Fields& fields, LaterMaterialsOptions& options);
 
 Materials fitMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, float roughness,
                        const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress);
+
+// The finished frame before: the same Gaussians in the same order.
+struct EarlierFrame {
+  const GaussianCloud& cloud;
+  const Materials& materials;
+};
+
+// Of a later frame of a take: starts from the frame before, whose view-dependence turns with each Gaussian
+// (methods A-19), is held to it, and carries its roughness. Throws Error{Bug} when the counts differ.
+Materials fitLaterMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+                            const EarlierFrame& before, const FitMaterialsOptions& options,
+                            ComputeDevice& device, Progress& progress);
 
 }  // namespace beam
