@@ -8,6 +8,7 @@
 #include "core/pipeline/frame_result.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/material_map_files.h"
+#include "core/stages/track_files.h"
 #include "core/stages/training_input.h"
 
 namespace beam {
@@ -21,6 +22,7 @@ struct MaterialsOptions {
 void describe(Fields& fields, MaterialsOptions& options) {
   describe(fields, options.bake);
   fields.group("fit", [&] { describe(fields, options.fit); });
+  fields.group("later", [&] { describe(fields, options.fit.later); });
 }
 
 class MaterialsStage final : public StageOf<MaterialsOptions> {
@@ -40,7 +42,8 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                    .title = "Fit materials",
                    .source = "BEAM 3.2",
                    .inputs = {"capture.import", "capture.screen", "surface.refine", "materials.bake"},
-                   .weight = 10}}};
+                   .weight = 10,
+                   .later = {.inputs = {"track.joints"}, .previous = {"materials.fit"}}}}};
     return kInfo;
   }
 
@@ -69,11 +72,22 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
         maps.push_back(readMaterialMaps(folder, view.name, view.camera));
     }
     const GaussianCloud cloud = cloudOf(c);
-    const Materials materials = fitMaterials(maps, cloud, static_cast<float>(options_.bake.roughness),
-                                             options_.fit, c.device, c.progress);
+    const Materials materials = materialsOf(c, maps, cloud);
     validate(materials, cloud);
     writeSplatPly(c.folder / kMaterialsFile, cloud, &materials);
     c.scores["views"] = static_cast<double>(maps.size());
+  }
+
+  Materials materialsOf(StepContext& c, std::span<const MaterialMaps> maps,
+                        const GaussianCloud& cloud) const {
+    const bool follows = c.later() && !readTrackNote(c.input("track.joints")).restarted;
+    if (!follows) {
+      return fitMaterials(maps, cloud, static_cast<float>(options_.bake.roughness), options_.fit, c.device,
+                          c.progress);
+    }
+    const SplatFile before = readSplatPly(*c.previousResult("materials.fit") / kMaterialsFile);
+    return fitLaterMaterials(maps, cloud, {before.cloud, *before.materials}, options_.fit, c.device,
+                             c.progress);
   }
 };
 
