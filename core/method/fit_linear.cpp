@@ -21,7 +21,6 @@ constexpr float kSeen = 0.05f;                    // sum of blend weights (pixel
 constexpr float kPrior = 1e-4f;                   // pull towards the first guess, of what the pictures say
 constexpr float kPriorPixels = 0.003f;            // and at least as much as this many pixels would say
 constexpr float kLeanPixels = 1;                  // evidence of the frame before that no Gaussian is without
-constexpr float kViewHold = 10;                   // times more than the direction-free colour is held
 constexpr int kNeighbors = 4;                     // seen Gaussians that lend their colour to an unseen one
 constexpr double kConverged = 1e-10;              // of the squared residual
 constexpr std::size_t kGrain = 2048;              // Gaussians a piece
@@ -161,10 +160,10 @@ class NormalEquations {
 
   // Adds memory * kShC0^2 * evidence * |x - before|^2 (kShC0^2: the mean over directions of every basis
   // function's square), so that what many Gaussians share becomes (seen + memory * before) / (1 + memory):
-  // the unit of memory is a frame's evidence, whatever the number of pixels and Gaussians. View-dependence
-  // is held more: over the side that is seen its 15 functions imitate a constant, and would take over what
-  // the colour may not change. Where the pictures contradict by more than `outlier` (a Gaussian that slid
-  // onto another cloth), memory fades. Returns the right-hand side for a step away from `before`.
+  // the unit of memory is a frame's evidence, whatever the number of pixels and Gaussians (less where
+  // view-dependence is cheap: over the side that is seen, its functions imitate a constant). Where the
+  // pictures contradict by more than `outlier` (a Gaussian that slid onto another cloth), memory fades.
+  // Returns the right-hand side for a step away from `before`.
   MaterialCoefficients holdTo(const MaterialCoefficients& before, vec4 memory, float outlier) {
     MaterialCoefficients r = residual(before);
     tie_.resize(cloud_.size());
@@ -177,7 +176,7 @@ class NormalEquations {
     for (std::size_t i = 0; i < r.size(); ++i) {
       // View-dependence is pulled towards 0 as well.
       if (i % kShCount != 0) r[i] -= pull(i) * before[i];
-      diagonal_[i] += tie(i);
+      diagonal_[i] += tie_[i / kShCount];
     }
     return r;
   }
@@ -201,7 +200,7 @@ class NormalEquations {
     parallelFor(p.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         q[i] = pull(i) * p[i];
-        if (!tie_.empty()) q[i] += tie(i) * p[i];
+        if (!tie_.empty()) q[i] += tie_[i / kShCount] * p[i];
       }
     });
     const auto evaluate = [&](std::size_t i, const std::array<float, kShCount>& b) { return at(p, i, b); };
@@ -222,8 +221,6 @@ class NormalEquations {
     const float share = i % kShCount == 0 ? kPrior : regularization_;
     return share * row_sum_[i / kShCount] + kPriorPixels * typical_;
   }
-
-  vec4 tie(std::size_t i) const { return (i % kShCount == 0 ? 1.0f : kViewHold) * tie_[i / kShCount]; }
 
   // How far the pictures want Gaussian i from where it is, as seen (sRGB-encoded; AO as it is): the worst
   // channel's for all of base colour, so that its hue does not split. `misfit`: importance-weighted sum.
@@ -406,7 +403,8 @@ MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const Gaussia
                                const MaterialCoefficients* before, const FitMaterialsOptions& options,
                                ComputeDevice& device, Progress& progress) {
   Progress collecting = progress.part(0.3, "collecting blend weights");
-  NormalEquations equations(maps, cloud, static_cast<float>(options.regularization), device, collecting);
+  const double regularization = before ? options.later.regularization : options.regularization;
+  NormalEquations equations(maps, cloud, static_cast<float>(regularization), device, collecting);
   MaterialCoefficients x = before ? *before : equations.firstGuess();
   Progress solving = progress.part(0.7, "solving for materials");
   if (before) {

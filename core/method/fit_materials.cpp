@@ -160,6 +160,15 @@ void describe(Fields& f, LaterMaterialsOptions& o) {
            .max = 100,
            .advanced = true},
           o.outlier);
+  f.field({.name = "regularization",
+           .label = "Regularization, later frames",
+           .help = "Linear solver: pull of the view-dependent coefficients towards 0, which flicker as the "
+                   "body turns "
+                   "before a camera and hardly sharpen what many frames average.",
+           .min = 0,
+           .max = 100,
+           .advanced = true},
+          o.regularization);
   f.field({.name = "linear_iterations",
            .label = "Linear iterations, later frames",
            .help = "Steps of conjugate gradients of a frame that starts from the frame before.",

@@ -17,6 +17,7 @@ struct LaterMaterialsOptions {
   double occlusion_memory_frames =
       0.4;                        // linear: the same of AO, which really changes: a tenth (methods 5.10)
   double outlier = 0.1;           // linear: contradiction that halves and more the memory, sRGB
+  double regularization = 0.1;    // linear: on the view-dependent coefficients
   int linear_iterations = 12;     // the start is near
   double temporal_weight = 5e-5;  // adam: lambda_temp of eq. 10, base colour only
   int adam_iterations = 1500;     // methods 5.10
