@@ -10,6 +10,7 @@
 #include "core/base/rng.h"
 #include "core/optim/gaussian_model.h"
 #include "core/render/cpu/embree_tracer.h"
+#include "core/render/cpu/splat_bvh.h"
 #include "core/render/device.h"
 #include "tests/support/capsule_man.h"
 
@@ -133,8 +134,15 @@ void OcclusionRaysEmbree(benchmark::State& s) { occlusionRays(s, *makeEmbreeTrac
 
 void TracerBuild(benchmark::State& s) {
   const GaussianCloud cloud = cloudForRays(s);
-  const auto device = makeCpuDevice();
-  for (auto _ : s) benchmark::DoNotOptimize(device->newTracer({}, cloud));
+  for (auto _ : s) benchmark::DoNotOptimize(makeSplatBvhTracer({}, cloud));
+}
+
+// From the tree of the frame before.
+void TracerFollow(benchmark::State& s) {
+  const GaussianCloud cloud = cloudForRays(s);
+  std::shared_ptr<const SplatBvh> tree;
+  makeFollowingTracer({}, cloud, tree);
+  for (auto _ : s) benchmark::DoNotOptimize(makeFollowingTracer({}, cloud, tree));
 }
 
 void sizes(benchmark::internal::Benchmark* b) {
@@ -162,5 +170,6 @@ BENCHMARK(Adam)->Arg(140000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTi
 BENCHMARK(OcclusionRays)->Apply(clouds);
 BENCHMARK(OcclusionRaysEmbree)->Apply(clouds);
 BENCHMARK(TracerBuild)->Apply(clouds);
+BENCHMARK(TracerFollow)->Apply(clouds);
 
 BENCHMARK_MAIN();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <mutex>
+
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/render/cpu/cpu_rasterizer.h"
@@ -62,9 +64,14 @@ class CpuDevice final : public ComputeDevice {
     return makeCpuRasterizer(desc);
   }
   std::unique_ptr<Tracer> newTracer(const TracerDesc& desc, const GaussianCloud& cloud) override {
-    return makeSplatBvhTracer(desc, cloud);
+    const std::lock_guard lock(mutex_);
+    return makeFollowingTracer(desc, cloud, tree_);
   }
   std::unique_ptr<TrainingOps> newTrainingOps() override { return makeCpuTrainingOps(); }
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const SplatBvh> tree_;  // of the last tracer: the next frame's Gaussians are near
 };
 
 }  // namespace

@@ -12,7 +12,13 @@
 
 namespace beam {
 
+struct SplatBvh;
+
 std::unique_ptr<Tracer> makeSplatBvhTracer(const TracerDesc& desc, const GaussianCloud& cloud);
+// Takes over `last`, the tree of an earlier cloud (may be null), where it still serves, else builds; `last`
+// becomes the tree in use. What is occluded does not depend on it.
+std::unique_ptr<Tracer> makeFollowingTracer(const TracerDesc& desc, const GaussianCloud& cloud,
+                                            std::shared_ptr<const SplatBvh>& last);
 
 // 16 Gaussians, structure of arrays; unused lanes are never met.
 struct alignas(64) SplatBlock {
@@ -20,7 +26,7 @@ struct alignas(64) SplatBlock {
   float opacity[16], cut2[16];
 };
 
-// Children of a node. Unused ones have an empty box.
+// Children of a node. Unused ones have an empty box and child 0.
 struct alignas(64) SplatNode {
   float bound[6][16];  // low x y z, high x y z
   float axis[3][16], axis_low[16], axis_high[16];
@@ -29,12 +35,23 @@ struct alignas(64) SplatNode {
 
 inline constexpr int kMaxTreeDepth = 64;
 
+inline constexpr std::uint32_t kNoSplat = ~0u;
+
 struct SplatBvh {
   AlignedVector<SplatNode> nodes;  // the first one is the root; none: no Gaussians
   AlignedVector<SplatBlock> blocks;
+  std::vector<std::uint32_t> splat;  // of every lane of every block; kNoSplat: unused
+  std::size_t splats = 0;
+  float built_cost = 0;  // what costOf() was when it was built
 };
 
 SplatBvh buildSplatBvh(const std::vector<RaySplat>& splats);
+
+// Lays the tree around `splats`, of which there are as many as when it was built; each keeps its place.
+void refitSplatBvh(SplatBvh& tree, const std::vector<RaySplat>& splats);
+
+// Surface areas of all children, in root areas: how many of them a ray through the root meets.
+float costOf(const SplatBvh& tree);
 
 struct RayRules {
   std::uint64_t free_units;  // a ray is blocked above; UINT64_MAX: never

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds the tree of splat_bvh.h: binary splits by the surface area heuristic in 16 bins, then every node
-// takes in its largest descendants until it has 16 children. The tree does not depend on the number of
-// threads.
+// takes in its largest descendants until it has 16 children; the refit lays boxes and slabs around them. The
+// tree does not depend on the number of threads.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/base/parallel.h"
@@ -106,11 +105,11 @@ class Builder {
     if (items_.empty()) return {};
     const std::unique_ptr<Branch> root = branch(0, items_.size(), 0);
     addNode(*root);
-    parallelFor(children_.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) fillSlab(i);
-    });
     tree_.nodes.shrink_to_fit();
-    tree_.blocks.shrink_to_fit();
+    tree_.blocks.resize(tree_.splat.size() / 16);
+    tree_.splats = splats_.size();
+    refitSplatBvh(tree_, splats_);
+    tree_.built_cost = costOf(tree_);
     return std::move(tree_);
   }
 
@@ -180,14 +179,7 @@ class Builder {
     const std::size_t at = tree_.nodes.size();
     tree_.nodes.emplace_back();
     const std::vector<const Branch*> children = childrenOf(parent);
-    for (std::size_t i = 0; i < 16; ++i) {
-      const Box box = i < children.size() ? children[i]->box : Box{};
-      for (int k = 0; k < 3; ++k) {
-        tree_.nodes[at].bound[k][i] = box.low[k];
-        tree_.nodes[at].bound[3 + k][i] = box.high[k];
-      }
-      if (i >= children.size()) continue;
-      children_.push_back({at, i, children[i]->begin, children[i]->end});
+    for (std::size_t i = 0; i < children.size(); ++i) {
       const std::int32_t child = children[i]->left ? addNode(*children[i]) : addLeaf(*children[i]);
       tree_.nodes[at].child[i] = child;
     }
@@ -195,68 +187,15 @@ class Builder {
   }
 
   std::int32_t addLeaf(const Branch& leaf) {
-    const std::size_t first = tree_.blocks.size();
-    for (std::size_t begin = leaf.begin; begin < leaf.end; begin += 16) {
-      tree_.blocks.emplace_back();
-      SplatBlock& block = tree_.blocks.back();
-      std::fill_n(block.cut2, 16, -1.0f);
-      for (std::size_t i = begin; i < std::min(begin + 16, leaf.end); ++i) {
-        const RaySplat& s = splats_[items_[i].splat];
-        const std::size_t lane = i - begin;
-        for (int k = 0; k < 9; ++k) block.canonical[k][lane] = s.canonical[k];
-        for (int k = 0; k < 3; ++k) block.center[k][lane] = s.center[k];
-        block.opacity[lane] = s.opacity;
-        block.cut2[lane] = s.cut2;
-      }
-    }
-    return ~static_cast<std::int32_t>(2 * first + (tree_.blocks.size() - first - 1));
+    const std::size_t first = tree_.splat.size() / 16, blocks = (leaf.end - leaf.begin + 15) / 16;
+    tree_.splat.resize(16 * (first + blocks), kNoSplat);
+    for (std::size_t i = leaf.begin; i < leaf.end; ++i)
+      tree_.splat[16 * first + (i - leaf.begin)] = items_[i].splat;
+    return ~static_cast<std::int32_t>(2 * first + (blocks - 1));
   }
 
-  // Rows of the canonical transform are axis / sigma.
-  static vec3 rowOf(const RaySplat& s, int k) {
-    return {s.canonical[3 * k], s.canonical[3 * k + 1], s.canonical[3 * k + 2]};
-  }
-  static vec3 thinAxis(const RaySplat& s) {
-    vec3 thin = rowOf(s, 0);
-    for (int k = 1; k < 3; ++k) {
-      if (const vec3 row = rowOf(s, k); glm::dot(row, row) > glm::dot(thin, thin)) thin = row;
-    }
-    return glm::normalize(thin);
-  }
-
-  void fillSlab(std::size_t index) {
-    const Child& c = children_[index];
-    vec3 axis(0);
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      const vec3 thin = thinAxis(splats_[items_[i].splat]);
-      axis += glm::dot(axis, thin) < 0 ? -thin : thin;
-    }
-    axis = glm::normalize(axis);
-    float low = kInfinity, high = -kInfinity;
-    for (std::size_t i = c.begin; i < c.end; ++i) {
-      const RaySplat& s = splats_[items_[i].splat];
-      float variance = 0;
-      for (int k = 0; k < 3; ++k) {
-        const vec3 row = rowOf(s, k);
-        const float along = glm::dot(row, axis) / glm::dot(row, row);  // sigma (axis . own axis)
-        variance += along * along;
-      }
-      const float reach = std::sqrt(variance * s.cut2) + s.margin_m, at = glm::dot(s.center, axis);
-      low = std::min(low, at - reach);
-      high = std::max(high, at + reach);
-    }
-    SplatNode& node = tree_.nodes[c.node];
-    for (int k = 0; k < 3; ++k) node.axis[k][c.lane] = axis[k];
-    node.axis_low[c.lane] = low;
-    node.axis_high[c.lane] = high;
-  }
-
-  struct Child {
-    std::size_t node, lane, begin, end;
-  };
   const std::vector<RaySplat>& splats_;
   std::vector<Item> items_;
-  std::vector<Child> children_;
   SplatBvh tree_;
 };
 

@@ -221,6 +221,53 @@ TEST(Tracers, BuildTheSameTreeOnAnyNumberOfThreads) {
   EXPECT_TRUE(same(one.blocks, two.blocks));
 }
 
+// The capsule man in a twist: the higher, the further turned.
+GaussianCloud twisted(GaussianCloud cloud, float per_m) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const quat turn = glm::angleAxis(per_m * cloud.position_m[i].y, vec3(0, 1, 0));
+    cloud.position_m[i] = turn * cloud.position_m[i];
+    cloud.rotation[i] = turn * cloud.rotation[i];
+  }
+  return cloud;
+}
+
+TEST(Tracers, OccludeTheSameFromATreeThatFollowsTheGaussians) {
+  const GaussianCloud man = testing::capsuleCloud(20000);
+  const std::vector<Ray> rays = testing::capsuleRays(400, 50, 0.01f);
+  std::shared_ptr<const SplatBvh> tree;
+  makeFollowingTracer({}, man, tree);
+  const std::vector<std::uint32_t> places = tree->splat;
+  for (const float per_m : {0.05f, 0.2f}) {
+    const GaussianCloud now = twisted(man, per_m);
+    const auto following = makeFollowingTracer({}, now, tree);
+    EXPECT_EQ(tree->splat, places) << per_m;
+    const auto fresh = makeSplatBvhTracer({}, now);
+    std::vector<std::uint8_t> blocked(rays.size());
+    following->occluded(rays, blocked);
+    EXPECT_EQ(blocked, blockedRays(&makeSplatBvhTracer, now, rays)) << per_m;
+    for (std::size_t i = 0; i < rays.size(); i += 97)
+      EXPECT_EQ(following->alphaSum(rays[i]), fresh->alphaSum(rays[i])) << i;
+  }
+}
+
+TEST(Tracers, BuildAnewWhereTheLastTreeDoesNotServe) {
+  GaussianCloud c = randomCloud(3000);
+  std::shared_ptr<const SplatBvh> tree;
+  makeFollowingTracer({}, c, tree);
+  const std::vector<std::uint32_t> places = tree->splat;
+  std::reverse(c.position_m.begin(), c.position_m.end());  // as many, but others
+  const auto other = makeFollowingTracer({}, c, tree);
+  EXPECT_NE(tree->splat, places);
+  EXPECT_EQ(costOf(*tree), tree->built_cost);
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(other->alphaSum(randomRay(i)), makeSplatBvhTracer({}, c)->alphaSum(randomRay(i)));
+  makeFollowingTracer({}, randomCloud(100), tree);
+  EXPECT_EQ(tree->splats, 100u);
+  makeFollowingTracer({}, {}, tree);
+  EXPECT_EQ(makeFollowingTracer({}, randomCloud(50), tree)->alphaSum(randomRay(1)),
+            makeSplatBvhTracer({}, randomCloud(50))->alphaSum(randomRay(1)));
+}
+
 // A sheet of overlapping splats with normal +X through (x, ., .), rows of y in [0, height], z in [-width,
 // width].
 void addWall(GaussianCloud& c, float x, float height, float width = 3, float spacing = 0.02f) {
