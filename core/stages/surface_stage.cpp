@@ -7,6 +7,7 @@
 #include "core/method/follow_surface.h"
 #include "core/method/score_views.h"
 #include "core/pipeline/frame_result.h"
+#include "core/scene/pose.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/score_files.h"
 #include "core/stages/track_files.h"

@@ -7,6 +7,7 @@
 #include "core/method/fit_surface.h"
 #include "core/method/track_joints.h"
 #include "core/pipeline/frame_result.h"
+#include "core/scene/pose.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/track_files.h"
 #include "core/stages/training_input.h"
