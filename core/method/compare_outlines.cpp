@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/method/visual_hull.h"
@@ -12,15 +11,12 @@ namespace beam {
 namespace {
 
 constexpr double kCellShare = 0.02;  // of the subject's size: how far a mask may be off
-constexpr int kViewsPerWrong = 8;    // of so many views one may be wrong
-constexpr int kMostWrong = 3;
-constexpr std::uint8_t kNobody = 255;
+constexpr std::int32_t kNoCell = -1;
 
-// The least denials of the cells in front of a pixel, on a raster of blocks.
+// The least denied cell on the rays through a pixel, on a raster of blocks.
 struct Raster {
   int block = 1, width = 0, height = 0;
-  std::vector<std::uint8_t> denials;  // kNobody: no cell
-  std::vector<std::int32_t> denier;   // of pixels that one view denies; -1: different views do, by the cell
+  std::vector<std::int32_t> cell;
 };
 
 int blockOf(const VisualHull& hull, const VisualHull::Cells& cells, int view) {
@@ -36,87 +32,78 @@ Raster rasterOf(const VisualHull& hull, const VisualHull::Cells& cells, int view
   r.block = blockOf(hull, cells, view);
   r.width = (picture.mask.width + r.block - 1) / r.block;
   r.height = (picture.mask.height + r.block - 1) / r.block;
-  r.denials.assign(static_cast<std::size_t>(r.width) * r.height, kNobody);
-  r.denier.assign(r.denials.size(), -1);
-  for (const VisualHull::Cell& c : cells.cells) {
-    const auto box = hull.footprint(view, c.center, cells.half_m);
+  r.cell.assign(static_cast<std::size_t>(r.width) * r.height, kNoCell);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    const auto box = hull.footprint(view, cells.cells[c].center, cells.half_m);
     if (!box || hull.insideCount(view, *box) == 0) continue;
     for (int y = box->y0 / r.block; y < (box->y1 + r.block - 1) / r.block; ++y) {
       for (int x = box->x0 / r.block; x < (box->x1 + r.block - 1) / r.block; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * r.width + x;
-        if (c.denials == r.denials[i] && r.denier[i] != c.denier) r.denier[i] = -1;
-        if (c.denials >= r.denials[i]) continue;
-        r.denials[i] = static_cast<std::uint8_t>(c.denials);
-        r.denier[i] = c.denier;
+        std::int32_t& known = r.cell[static_cast<std::size_t>(y) * r.width + x];
+        const bool better =
+            known == kNoCell || cells.cells[c].denials < cells.cells[static_cast<std::size_t>(known)].denials;
+        if (better) known = static_cast<std::int32_t>(c);
       }
     }
   }
   return r;
 }
 
-// Shares of one view's mask.
-struct Shares {
-  bool any = false;
-  double denied = 0;
-  std::vector<double> by;  // denied by that view alone
+// What one view's mask says: its contradicted share, and the blame for it by view.
+struct Verdict {
+  double contradicted = 0;
+  std::vector<double> blame;
 };
 
-Shares sharesOf(const VisualHull& hull, const Raster& r, int view, const FrameView& picture, int views,
-                int most_wrong) {
-  Shares s;
-  s.by.assign(static_cast<std::size_t>(views), 0);
+Verdict verdictOf(const VisualHull& hull, const VisualHull::Cells& cells, int view, const FrameView& picture,
+                  int views) {
+  const Raster r = rasterOf(hull, cells, view, picture);
+  Verdict v;
+  v.blame.assign(static_cast<std::size_t>(views), 0);
   double area = 0;
   for (int y = 0; y < r.height; ++y) {
     for (int x = 0; x < r.width; ++x) {
-      const VisualHull::PixelBox box{x * r.block, y * r.block,
-                                     std::min((x + 1) * r.block, picture.mask.width),
-                                     std::min((y + 1) * r.block, picture.mask.height)};
-      const double inside = hull.insideCount(view, box);
-      const std::size_t i = static_cast<std::size_t>(y) * r.width + x;
+      const double inside =
+          hull.insideCount(view, {x * r.block, y * r.block, std::min((x + 1) * r.block, picture.mask.width),
+                                  std::min((y + 1) * r.block, picture.mask.height)});
       area += inside;
-      if (r.denials[i] > most_wrong) s.denied += inside;
-      if (r.denials[i] == 1 && r.denier[i] >= 0) s.by[static_cast<std::size_t>(r.denier[i])] += inside;
+      const std::int32_t index = r.cell[static_cast<std::size_t>(y) * r.width + x];
+      const int denials = index == kNoCell ? 0 : cells.cells[static_cast<std::size_t>(index)].denials;
+      if (index != kNoCell && denials == 0) continue;
+      v.contradicted += inside;
+      v.blame[static_cast<std::size_t>(view)] += inside / (1 + denials);
+      for (int d = 0; d < denials; ++d) {
+        const int denier = cells.cells[static_cast<std::size_t>(index)].deniers[static_cast<std::size_t>(d)];
+        v.blame[static_cast<std::size_t>(denier)] += inside / (1 + denials);
+      }
     }
   }
-  s.any = area > 0;
-  if (!s.any) return s;
-  s.denied /= area;
-  for (double& share : s.by) share /= area;
-  return s;
+  if (area == 0) return v;
+  v.contradicted /= area;
+  for (double& b : v.blame) b /= area;
+  return v;
 }
 
 }  // namespace
 
-std::vector<OutlineFit> compareOutlines(std::span<const FrameView> views, const Progress& progress) {
+std::vector<OutlineFit> compareOutlines(std::span<const FrameView> views, int most_wrong,
+                                        const Progress& progress) {
   std::vector<OutlineFit> fits(views.size());
   std::vector<std::size_t> with_mask;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!views[i].mask.empty()) with_mask.push_back(i);
   }
   const int count = static_cast<int>(with_mask.size());
-  const int most_wrong = std::clamp(count / kViewsPerWrong, 1, kMostWrong);
   const VisualHull hull(views);
   const VisualHull::Cells cells = hull.cellsDeniedBy(most_wrong, kCellShare, progress);
-  if (cells.cells.empty()) return fits;
-  std::vector<Shares> shares(with_mask.size());
+  std::vector<Verdict> verdicts(with_mask.size());
   parallelFor(with_mask.size(), 1, [&](std::size_t v, std::size_t) {
     if (progress.stopRequested()) return;
-    const FrameView& picture = views[with_mask[v]];
-    const int view = static_cast<int>(v);
-    shares[v] = sharesOf(hull, rasterOf(hull, cells, view, picture), view, picture, count, most_wrong);
+    verdicts[v] = verdictOf(hull, cells, static_cast<int>(v), views[with_mask[v]], count);
   });
   progress.check();
   for (std::size_t v = 0; v < with_mask.size(); ++v) {
-    OutlineFit& fit = fits[with_mask[v]];
-    fit.judged = true;
-    fit.denied = shares[v].denied;
-    double others = 0;
-    for (std::size_t o = 0; o < with_mask.size(); ++o) {
-      if (o == v || !shares[o].any) continue;
-      fit.alone += shares[o].by[v];
-      ++others;
-    }
-    if (others > 0) fit.alone /= others;
+    fits[with_mask[v]].contradicted = verdicts[v].contradicted;
+    for (std::size_t o = 0; o < with_mask.size(); ++o) fits[with_mask[o]].blame += verdicts[v].blame[o];
   }
   return fits;
 }

@@ -12,15 +12,18 @@
 namespace beam {
 
 struct OutlineFit {
-  // Share of the view's mask that nothing can lie behind: more other views than are likely to be wrong deny
-  // every place on these rays.
-  double denied = 0;
-  // What the view alone denies and the others agree upon: mean over the other views, share of their masks.
-  double alone = 0;
-  bool judged = false;  // false: the view has no mask, or nothing of it is in the common space
+  // Share of the view's mask that nothing can lie behind: at every place on these rays some other view sees
+  // background.
+  double contradicted = 0;
+  // Contradictions of all views, in shares of their masks, that are put down to this view: it and the
+  // `most_wrong` views at most that deny the least denied place share one evenly; where more deny, it is its.
+  double blame = 0;
 };
 
-// One a view. Masks may be off by about two hundredths of the subject's size.
-std::vector<OutlineFit> compareOutlines(std::span<const FrameView> views, const Progress& progress);
+// One a view; zeros for a view without a mask. Masks may be off by about two hundredths of the subject's
+// size.
+// `most_wrong`: 0 to VisualHull::kMostDenials; 0 is quick and tells contradictions, but not whose they are.
+std::vector<OutlineFit> compareOutlines(std::span<const FrameView> views, int most_wrong,
+                                        const Progress& progress);
 
 }  // namespace beam

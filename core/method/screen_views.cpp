@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::size_t kFewestKept = 3, kViewsPerLeftOut = 4;
 constexpr std::uint8_t kInside = 128;
+constexpr int kMostWrong = 2;  // cameras that deny one place together
+constexpr std::size_t kCandidates = 3;
 // The bright part is what one pixel in so many is brighter than; a small subject before black has few.
 constexpr std::size_t kBrightPart = 20, kBrightPartOfAll = 1000;
 constexpr double kFineShare = 0.01;  // of the subject's size, the square root of its area
@@ -151,31 +153,75 @@ class Screener {
     }
   }
 
-  // A camera of another moment disturbs the others' figures too: one at a time, the worst first.
+  // The views whose outlines are compared, without the suspects and `tried`.
+  struct Compared {
+    std::vector<FrameView> views;
+    std::vector<std::size_t> index;
+  };
+  Compared comparedWithout(const std::vector<std::size_t>& tried) const {
+    Compared c;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      if (suspect_[i] || views_[i].mask.empty()) continue;
+      if (std::find(tried.begin(), tried.end(), i) != tried.end()) continue;
+      c.views.push_back(views_[i]);
+      c.index.push_back(i);
+    }
+    return c;
+  }
+
+  // The share of the masks that is contradicted, mean over the views.
+  double contradictedWithout(const std::vector<std::size_t>& tried) {
+    const Compared c = comparedWithout(tried);
+    const std::vector<OutlineFit> fits = compareOutlines(c.views, 0, progress_);
+    double sum = 0;
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+      sum += fits[i].contradicted;
+      if (tried.empty()) found_.figures[c.index[i]].outline = fits[i].contradicted;
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(1, fits.size()));
+  }
+
+  // Adds to `tried` the one of the most blamed views without which the least contradiction remains: returned.
+  double tryWorst(std::vector<std::size_t>& tried) {
+    const Compared c = comparedWithout(tried);
+    const int most_wrong = std::clamp(static_cast<int>(c.views.size() / kViewsPerLeftOut), 1, kMostWrong);
+    const std::vector<OutlineFit> fits = compareOutlines(c.views, most_wrong, progress_);
+    std::vector<std::pair<double, std::size_t>> blamed;
+    for (std::size_t i = 0; i < fits.size(); ++i) blamed.emplace_back(-fits[i].blame, c.index[i]);
+    std::sort(blamed.begin(), blamed.end());
+    std::size_t best = blamed.front().second;
+    double least = 2;
+    for (std::size_t i = 0; i < std::min(kCandidates, blamed.size()); ++i) {
+      std::vector<std::size_t> without = tried;
+      without.push_back(blamed[i].second);
+      const double share = contradictedWithout(without);
+      if (share < least) least = share, best = blamed[i].second;
+    }
+    tried.push_back(best);
+    return least;
+  }
+
+  // A camera of another moment disturbs the others' outlines too: one at a time is taken away, the worst
+  // first, and accused only when little contradiction remains without them: ragged masks accuse nobody.
   void outlines() {
-    for (bool first = true; found_.suspects.size() <= mostLeftOut(); first = false) {
-      std::vector<FrameView> rest;
-      std::vector<std::size_t> index;
-      for (std::size_t i = 0; i < views_.size(); ++i) {
-        if (suspect_[i] || views_[i].mask.empty()) continue;
-        rest.push_back(views_[i]);
-        index.push_back(i);
-      }
-      if (rest.size() <= kFewestKept) return;
-      const std::vector<OutlineFit> fits = compareOutlines(rest, progress_);
-      std::vector<double> all;
-      std::size_t worst = 0;
-      for (std::size_t i = 0; i < fits.size(); ++i) {
-        all.push_back(fits[i].denied + fits[i].alone);
-        if (all[i] > all[worst]) worst = i;
-        if (first) found_.figures[index[i]].outline = all[i];
-      }
-      const double figure = all[worst];
-      if (figure < limits_.outline_share || figure < limits_.outline_times * quantile(all, 0.75)) return;
-      accuse(index[worst], ScreenKind::Outline, figure,
-             fmt::format("has an outline that the other cameras contradict in {:.1f} % of its mask: another "
-                         "moment, a moved camera or a wrong mask",
-                         100 * figure));
+    if (comparedWithout({}).views.size() <= kFewestKept) return;
+    const double all = contradictedWithout({});
+    if (all < limits_.outline_share) return;
+    std::vector<std::size_t> tried;
+    std::vector<double> drop;
+    for (double now = all; now > limits_.outline_rest * all;) {
+      if (found_.suspects.size() + tried.size() >= mostLeftOut()) return;
+      const double next = tryWorst(tried);
+      drop.push_back(now - next);
+      now = next;
+    }
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      accuse(
+          tried[i], ScreenKind::Outline, drop[i],
+          fmt::format("has an outline that the other cameras contradict ({:.1f} % of the masks' area is "
+                      "contradicted, {:.1f} % of that through this camera): another moment, a moved camera "
+                      "or a wrong mask",
+                      100 * all, 100 * drop[i] / all));
     }
   }
 

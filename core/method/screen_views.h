@@ -19,9 +19,9 @@ struct ScreenLimits {
   // The bright part of a black picture: at most, and as a share of the median camera's.
   double black_luma = 0.03, black_share = 0.15;
   double blurred_share = 0.55;  // fine detail against the median camera's
-  // Share of the mask that cannot be the others' body or is missing of it: at least, and times that of three
-  // quarters of the cameras.
-  double outline_share = 0.015, outline_times = 4;
+  // Share of the masks that contradicts the others, mean over the views: at least, and what may remain of it
+  // without the suspects.
+  double outline_share = 0.003, outline_rest = 0.25;
 };
 
 enum class ScreenKind { Black, Blurred, Outline };
@@ -31,15 +31,16 @@ const char* toText(ScreenKind kind);  // "blurred"
 struct ScreenFigures {
   std::string camera;
   double bright = 0;  // luma that one pixel in twenty inside the mask exceeds; without a mask one in 1000
-  double detail =
-      0;  // gradients at a hundredth of the subject's size against those at four; 0: none to judge
-  double outline = 0;  // share of the mask that contradicts the others' masks
+  // Gradients at a hundredth of the subject's size against those at four; 0: there is nothing to judge.
+  double detail = 0;
+  double outline = 0;  // share of its mask that other masks contradict
 };
 
 struct ScreenedView {
   std::string camera;
   ScreenKind kind = ScreenKind::Black;
-  double figure = 0;  // Black: bright; Blurred: share of the usual detail; Outline: share of the mask
+  double figure = 0;  // Black: bright; Blurred: share of the usual detail; Outline: fall of
+                      // the contradicted share of the masks without it
   std::string text;   // a sentence after the camera's name
 };
 

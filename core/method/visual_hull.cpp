@@ -93,8 +93,8 @@ std::optional<VisualHull::Cell> VisualHull::votedCell(const dvec3& center, doubl
     if (!box) continue;
     ++seen;
     if (insideCount(v, *box) > 0) continue;
-    if (++cell.denials > most_denials) return std::nullopt;
-    cell.denier = v;
+    if (cell.denials == most_denials) return std::nullopt;
+    cell.deniers[static_cast<std::size_t>(cell.denials++)] = static_cast<std::int16_t>(v);
   }
   if (seen < 2) return std::nullopt;
   return cell;

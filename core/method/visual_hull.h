@@ -2,6 +2,7 @@
 // Visual hull of a frame's masks: the points that no view sees outside its mask.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -30,17 +31,18 @@ class VisualHull {
   std::vector<vec3> surfaceCells(float cell_m, const Progress& progress) const;
 
   // A view denies a cell that it sees inside its picture with no pixel of its mask on it.
+  static constexpr int kMostDenials = 3;
   struct Cell {
     dvec3 center;
     int denials = 0;
-    int denier = -1;  // the one view when denials is 1
+    std::array<std::int16_t, kMostDenials> deniers = {};  // the first `denials` are views
   };
   struct Cells {
     double half_m = 0;
     std::vector<Cell> cells;
   };
-  // The cells that two views see and at most `most_denials` deny, in a fixed order; about `share` of the
-  // subject's size, by the median view's mask, and not below a pixel.
+  // The cells that two views see and at most `most_denials` (to kMostDenials) deny, in a fixed order; about
+  // `share` of the subject's size, by the median view's mask, and not below a pixel.
   Cells cellsDeniedBy(int most_denials, double share, const Progress& progress) const;
 
   // Half-open, inside the picture.
