@@ -182,9 +182,8 @@ class Screener {
   }
 
   // Adds to `tried` the one of the most blamed views without which the least contradiction remains: returned.
-  double tryWorst(std::vector<std::size_t>& tried) {
+  double tryWorst(int most_wrong, std::vector<std::size_t>& tried) {
     const Compared c = comparedWithout(tried);
-    const int most_wrong = std::clamp(static_cast<int>(c.views.size() / kViewsPerLeftOut), 1, kMostWrong);
     const std::vector<OutlineFit> fits = compareOutlines(c.views, most_wrong, progress_);
     std::vector<std::pair<double, std::size_t>> blamed;
     for (std::size_t i = 0; i < fits.size(); ++i) blamed.emplace_back(-fits[i].blame, c.index[i]);
@@ -201,17 +200,14 @@ class Screener {
     return least;
   }
 
-  // A camera of another moment disturbs the others' outlines too: one at a time is taken away, the worst
-  // first, and accused only when little contradiction remains without them: ragged masks accuse nobody.
-  void outlines() {
-    if (comparedWithout({}).views.size() <= kFewestKept) return;
-    const double all = contradictedWithout({});
-    if (all < limits_.outline_share) return;
+  // Takes the worst away one at a time and accuses them when little contradiction remains: ragged masks
+  // accuse nobody. False: they do not explain the contradictions.
+  bool explained(int most_wrong, double all) {
     std::vector<std::size_t> tried;
     std::vector<double> drop;
     for (double now = all; now > limits_.outline_rest * all;) {
-      if (found_.suspects.size() + tried.size() >= mostLeftOut()) return;
-      const double next = tryWorst(tried);
+      if (found_.suspects.size() + tried.size() >= mostLeftOut()) return false;
+      const double next = tryWorst(most_wrong, tried);
       drop.push_back(now - next);
       now = next;
     }
@@ -219,9 +215,20 @@ class Screener {
       accuse(
           tried[i], ScreenKind::Outline, drop[i],
           fmt::format("has an outline that the other cameras contradict ({:.1f} % of the masks' area is "
-                      "contradicted, {:.1f} % of that through this camera): another moment, a moved camera "
+                      "contradicted, {:.0f} % of that through this camera): another moment, a moved camera "
                       "or a wrong mask",
                       100 * all, 100 * drop[i] / all));
+    }
+    return true;
+  }
+
+  // A camera of another moment disturbs the others' outlines too, and two of them hide each other's blame.
+  void outlines() {
+    if (comparedWithout({}).views.size() <= kFewestKept) return;
+    const double all = contradictedWithout({});
+    if (all < limits_.outline_share) return;
+    for (int most_wrong = 1; most_wrong <= kMostWrong; ++most_wrong) {
+      if (explained(most_wrong, all)) return;
     }
   }
 
