@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "core/base/error.h"
 #include "core/io/image_file.h"
 #include "core/render/deferred.h"
@@ -122,6 +124,9 @@ void addMaps(std::vector<PictureSource>& sources, const Shot& shot, const Projec
                                        "The maps are not baked with these settings. Run until Materials.");
                          const auto file =
                              *folder / kMapsFolder / fmt::format("{}.{}.exr", shot.camera, map.file);
+                         if (!std::filesystem::exists(file))
+                           throw Error(Error::Kind::Data,
+                                       "This camera has no maps of this frame: it was left out of the fit.");
                          Picture p;
                          p.label = fmt::format("Baked {} · {}", map.title, shot.where);
                          p.values = readExr(file, map.color ? std::vector<std::string>{"R", "G", "B"}
