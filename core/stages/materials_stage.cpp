@@ -4,6 +4,7 @@
 #include "core/io/image_file.h"
 #include "core/io/splat_ply.h"
 #include "core/method/bake_materials.h"
+#include "core/method/evaluate_motion.h"
 #include "core/method/fit_materials.h"
 #include "core/pipeline/frame_result.h"
 #include "core/stages/builtin_stages.h"
@@ -86,8 +87,10 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                           c.progress);
     }
     const SplatFile before = readSplatPly(*c.previousResult("materials.fit") / kMaterialsFile);
-    return fitLaterMaterials(maps, cloud, {before.cloud, *before.materials}, options_.fit, c.device,
-                             c.progress);
+    Materials materials =
+        fitLaterMaterials(maps, cloud, {before.cloud, *before.materials}, options_.fit, c.device, c.progress);
+    c.scores["flicker_base_color"] = baseColorFlicker(before.cloud, *before.materials, materials);
+    return materials;
   }
 };
 

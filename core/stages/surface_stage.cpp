@@ -2,6 +2,7 @@
 #include "core/base/error.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/method/evaluate_motion.h"
 #include "core/method/extract_mesh.h"
 #include "core/method/fit_surface.h"
 #include "core/method/follow_surface.h"
@@ -61,7 +62,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .title = "Score against the photographs",
                    .reads = {Reads::Pictures, Reads::HeldOut},
                    .inputs = {"capture.import", "capture.screen", "surface.refine"},
-                   .weight = 2},
+                   .weight = 2,
+                   .later = {.previous = {"surface.refine"}}},
                   {.id = "mesh",
                    .title = "Fuse a mesh",
                    .inputs = {"capture.import", "capture.screen", "surface.refine"},
@@ -166,6 +168,9 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
       scores.push_back(std::move(s));
     }
     writeScores(c.folder, scores, trainingDownscale(c));
+    if (!c.later()) return;
+    const GaussianCloud before = readSplatPly(*c.previousResult("surface.refine") / kCloudFile).cloud;
+    if (isTracked(before, cloud)) c.scores["flicker_radiance"] = radianceFlicker(before, cloud);
   }
 
   void mesh(StepContext& c) const {
