@@ -95,16 +95,24 @@ class SampleHouse {
   std::filesystem::path capture_;
 };
 
-// Settings that make a frame take a second; the numbers are not meant to be good.
-inline Words tiny() {
-  return {"--set", "surface.iterations=20",     "--set",    "surface.cap=400",
-          "--set", "materials.ao_samples=4",    "--set",    "materials.base_color_samples=5",
-          "--set", "surface.mesh.voxel_m=0.03", "--frames", "0"};
-}
-
 inline Words operator+(Words a, const Words& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
+
+// Settings that make a frame take a moment; the numbers are not meant to be good.
+inline Words tinyTake() {
+  Words words;
+  for (const char* setting :
+       {"track.joints=100", "track.first_iterations=10", "track.iterations=8", "surface.iterations=20",
+        "surface.cap=400", "surface.later.iterations=10", "surface.mesh.voxel_m=0.03",
+        "materials.ao_samples=4", "materials.base_color_samples=5"}) {
+    words = words + Words{"--set", setting};
+  }
+  return words;
+}
+
+// Likewise, and one frame alone.
+inline Words tiny() { return tinyTake() + Words{"--frames", "0"}; }
 
 }  // namespace beam::testing

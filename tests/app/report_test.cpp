@@ -22,9 +22,9 @@ class Report : public ::testing::Test {
   Said beam(const Words& words) const { return Running(folder_.path(), words).wait(); }
   // Both frames as far as Surface, one camera held out; settings that take a moment.
   Said process(const fs::path& capture) const {
-    return beam({"process", capture.string(), "--out", at("p.beam").string(), "--hold-out", "cam02",
-                 "--until", "surface", "--set", "surface.iterations=20", "--set", "surface.cap=400", "--set",
-                 "surface.mesh.voxel_m=0.03"});
+    return beam(Words{"process", capture.string(), "--out", at("p.beam").string(), "--hold-out", "cam02",
+                      "--until", "surface"} +
+                tinyTake());
   }
 };
 

@@ -24,10 +24,9 @@ class LeavingOut : public ::testing::Test {
   std::string at(const char* name) const { return (folder_.path() / name).string(); }
   Said beam(const Words& words) const { return Running(folder_.path(), words).wait(); }
   Said process(const char* project, const Words& more = {}) const {
-    return beam(Words{"process", at("capture"), "--out", at(project), "--hold-out", "cam02", "--until",
-                      "surface", "--set", "surface.iterations=20", "--set", "surface.cap=400", "--set",
-                      "surface.mesh.voxel_m=0.03"} +
-                more);
+    return beam(
+        Words{"process", at("capture"), "--out", at(project), "--hold-out", "cam02", "--until", "surface"} +
+        tinyTake() + more);
   }
   // The Gaussians of a frame as they are exported.
   std::string cloud(const char* project, const char* frame) const {

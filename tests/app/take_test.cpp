@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames that build on each other, as the program runs them: the Gaussians keep their order, a kill and the
+// number of threads change no byte, segments run apart and join, a restart is a new beginning.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "core/base/rng.h"
+#include "core/io/splat_ply.h"
+#include "tests/app/cli_support.h"
+
+namespace beam::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class TakeRun : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempDir;
+    const Said said = Running(folder_->path(), {"sample", at("capture"), "--frames", "4", "--cameras", "5",
+                                                "--size", "48x64", "--samples", "2"})
+                          .wait();
+    ASSERT_EQ(said.code, 0) << said.err;
+    ASSERT_EQ(process("calm.beam").code, 0);
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  static std::string at(const std::string& name) { return (folder_->path() / name).string(); }
+  static Said beam(const Words& words) { return Running(folder_->path(), words).wait(); }
+  static Words command(const std::string& project, const Words& more = {}) {
+    return Words{"process", at("capture"), "--out", at(project)} + tinyTake() + more;
+  }
+  static Said process(const std::string& project, const Words& more = {}) {
+    return beam(command(project, more));
+  }
+  static std::map<std::string, std::string> exported(const std::string& project) {
+    const std::string out = at(project + ".ply");
+    const Said said = beam({"export", at(project), "--format", "ply", "--out", out});
+    EXPECT_EQ(said.code, 0) << said.err;
+    return filesIn(out);
+  }
+  static GaussianCloud cloud(const std::string& project, const std::string& frame) {
+    return readSplatPly(fs::path(at(project + ".ply")) / ("frame." + frame + ".ply")).cloud;
+  }
+
+ private:
+  static inline TempDir* folder_ = nullptr;
+};
+
+TEST_F(TakeRun, KeepsTheGaussiansThroughTheTake) {
+  ASSERT_EQ(exported("calm.beam").size(), 4u);
+  const GaussianCloud first = cloud("calm.beam", "000000"), last = cloud("calm.beam", "000003");
+  EXPECT_EQ(first.size(), last.size());
+  EXPECT_NE(first.position_m, last.position_m);
+}
+
+TEST_F(TakeRun, KilledAtAnyMomentOrWithOneThreadItEndsWithTheSameBytes) {
+  const RandomStream random(8);
+  for (std::uint64_t trial = 0; trial < 5; ++trial) {
+    const Running run(at(""), command("killed.beam", {"--threads", "1"}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20 + random.below(trial, 900)));
+    run.signal(SIGKILL);
+    run.wait();
+  }
+  ASSERT_EQ(process("killed.beam", {"--threads", "1"}).code, 0);
+  EXPECT_TRUE(exported("killed.beam") == exported("calm.beam"));
+}
+
+TEST_F(TakeRun, SegmentsOfTwoProcessesJoin) {
+  fs::create_directories(at("a"));
+  fs::create_directories(at("b"));
+  ASSERT_EQ(beam({"new", at("two.beam"), "--capture", at("capture")}).code, 0);
+  const Words run = Words{"run", at("two.beam"), "--until", "materials"} + tinyTake() + Words{"--frames"};
+  const Running later(at("a"), run + Words{"2-3"}), earlier(at("b"), run + Words{"0-1"});
+  EXPECT_EQ(later.wait().code, 0);
+  EXPECT_EQ(earlier.wait().code, 0);
+  const Said joined = beam({"run", at("two.beam"), "--until", "materials"});
+  ASSERT_EQ(joined.code, 0) << joined.err;
+  EXPECT_THAT(joined.err, Not(HasSubstr(": done")));
+  EXPECT_EQ(exported("two.beam").size(), 4u);
+  // The first segment is the beginning of the take that one run makes.
+  exported("calm.beam");
+  EXPECT_EQ(cloud("two.beam", "000001").position_m, cloud("calm.beam", "000001").position_m);
+}
+
+TEST_F(TakeRun, StartsAnewWhereTheResidualSaysSo) {
+  const Said said = process("anew.beam", {"--set", "track.restart_ratio=0.001"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("start anew"));
+  EXPECT_EQ(exported("anew.beam").size(), 4u);
+}
+
+TEST_F(TakeRun, ALoneFrameIsFittedAlone) {
+  ASSERT_EQ(process("lone.beam", {"--frames", "2"}).code, 0);
+  EXPECT_THAT(beam({"status", at("lone.beam")}).out, HasSubstr("not needed"));
+  const Said second = process("pair.beam", {"--frames", "2-3"});
+  ASSERT_EQ(second.code, 0) << second.err;
+  exported("lone.beam");
+  exported("pair.beam");
+  EXPECT_EQ(cloud("lone.beam", "000002").position_m, cloud("pair.beam", "000002").position_m);
+}
+
+}  // namespace
+}  // namespace beam::testing
