@@ -99,10 +99,11 @@ class Screener {
     measure();
     if (views_.size() <= kFewestKept) return std::move(found_);
     black();
-    blurred();
     outlines();
-    const std::size_t bad = found_.suspects.size();
-    found_.too_many = bad > mostLeftOut();
+    const std::size_t worse = found_.suspects.size();
+    blurred();
+    const std::size_t all = found_.suspects.size();
+    found_.to_leave_out = all <= mostLeftOut() ? all : worse <= mostLeftOut() ? worse : 0;
     return std::move(found_);
   }
 

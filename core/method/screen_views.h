@@ -46,9 +46,10 @@ struct ScreenedView {
 
 struct Screening {
   std::vector<ScreenFigures> figures;  // by view
-  std::vector<ScreenedView> suspects;  // in order of finding: black, blurred, outline
-  // Suspects are left out unless they are more than a quarter of the views, or fewer than three would remain.
-  bool too_many = false;
+  std::vector<ScreenedView> suspects;  // black, then outline, then blurred: the harm they do
+  // The first so many are to be left out: all, unless they are more than a quarter of the views or fewer than
+  // three would remain; then all that are not blurred, under the same rule; else none.
+  std::size_t to_leave_out = 0;
 };
 
 Screening screenViews(std::span<const FrameView> views, const ScreenLimits& limits, const Progress& progress);

@@ -56,11 +56,11 @@ class CaptureStage final : public StageOf<CaptureOptions> {
     return kInfo;
   }
 
-  void run(std::string_view step, StepContext& c) const override { step == "import" ? import(c) : screen(c); }
+  void run(std::string_view step, StepContext& c) const override { step == "import" ? importCapture(c) : screen(c); }
 
  private:
   // The result holds what was understood; pictures stay where they are.
-  static void import(StepContext& c) {
+  static void importCapture(StepContext& c) {
     writeFileAtomically(c.folder / "cameras.txt", calibrationText(c.capture));
     if (!c.capture.seed_points.position_m.empty()) {
       writePointsPly(c.folder / "seed_points.ply", c.capture.seed_points);
@@ -84,7 +84,9 @@ class CaptureStage final : public StageOf<CaptureOptions> {
       const std::vector<FrameView> views = readableViews(c);
       kept.cameras = views.size();
       found = screenViews(views, {}, c.progress);
-      (found.too_many ? kept.suspects : kept.left_out) = std::move(found.suspects);
+      const auto first_kept = found.suspects.begin() + static_cast<std::ptrdiff_t>(found.to_leave_out);
+      kept.left_out.assign(found.suspects.begin(), first_kept);
+      kept.suspects.assign(first_kept, found.suspects.end());
     }
     std::sort(kept.left_out.begin(), kept.left_out.end(),
               [](const ScreenedView& a, const ScreenedView& b) { return a.camera < b.camera; });
