@@ -10,7 +10,8 @@
 namespace beam {
 namespace {
 
-constexpr double kCellShare = 0.02;  // of the subject's size: how far a mask may be off
+// Cells of the subject's size: how far a mask may be off. For blame that two share coarse ones do.
+constexpr double kCellShare = 0.02, kCoarseShare = 0.03;
 constexpr std::int32_t kNoCell = -1;
 
 // The least denied cell on the rays through a pixel, on a raster of blocks.
@@ -94,7 +95,8 @@ std::vector<OutlineFit> compareOutlines(std::span<const FrameView> views, int mo
   }
   const int count = static_cast<int>(with_mask.size());
   const VisualHull hull(views);
-  const VisualHull::Cells cells = hull.cellsDeniedBy(most_wrong, kCellShare, progress);
+  const VisualHull::Cells cells =
+      hull.cellsDeniedBy(most_wrong, most_wrong < 2 ? kCellShare : kCoarseShare, progress);
   std::vector<Verdict> verdicts(with_mask.size());
   parallelFor(with_mask.size(), 1, [&](std::size_t v, std::size_t) {
     if (progress.stopRequested()) return;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -182,13 +183,25 @@ class Screener {
     return sum / static_cast<double>(std::max<std::size_t>(1, fits.size()));
   }
 
-  // Adds to `tried` the one of the most blamed views without which the least contradiction remains: returned.
-  double tryWorst(int most_wrong, std::vector<std::size_t>& tried) {
+  // Whether those who could be left out have half of it; `blamed` is sorted, negative.
+  bool fewHaveTheBlame(const std::vector<std::pair<double, std::size_t>>& blamed) const {
+    double all = 0, few = 0;
+    for (std::size_t i = 0; i < blamed.size(); ++i) {
+      all += blamed[i].first;
+      if (i < mostLeftOut()) few += blamed[i].first;
+    }
+    return 2 * few <= all;
+  }
+
+  // Nothing: everybody is to blame. Adds to `tried` the one of the most blamed views without which the least
+  // contradiction remains: returned.
+  std::optional<double> tryWorst(int most_wrong, std::vector<std::size_t>& tried) {
     const Compared c = comparedWithout(tried);
     const std::vector<OutlineFit> fits = compareOutlines(c.views, most_wrong, progress_);
     std::vector<std::pair<double, std::size_t>> blamed;
     for (std::size_t i = 0; i < fits.size(); ++i) blamed.emplace_back(-fits[i].blame, c.index[i]);
     std::sort(blamed.begin(), blamed.end());
+    if (tried.empty() && !fewHaveTheBlame(blamed)) return std::nullopt;
     std::size_t best = blamed.front().second;
     double least = 2;
     for (std::size_t i = 0; i < std::min(kCandidates, blamed.size()); ++i) {
@@ -208,9 +221,10 @@ class Screener {
     std::vector<double> drop;
     for (double now = all; now > limits_.outline_rest * all;) {
       if (found_.suspects.size() + tried.size() >= mostLeftOut()) return false;
-      const double next = tryWorst(most_wrong, tried);
-      drop.push_back(now - next);
-      now = next;
+      const std::optional<double> next = tryWorst(most_wrong, tried);
+      if (!next) return false;
+      drop.push_back(now - *next);
+      now = *next;
     }
     for (std::size_t i = 0; i < tried.size(); ++i) {
       accuse(

@@ -21,7 +21,7 @@ struct ScreenLimits {
   double blurred_share = 0.55;  // fine detail against the median camera's
   // Share of the masks that contradicts the others, mean over the views: at least, and what may remain of it
   // without the suspects.
-  double outline_share = 0.003, outline_rest = 0.25;
+  double outline_share = 0.006, outline_rest = 0.25;
 };
 
 enum class ScreenKind { Black, Blurred, Outline };
