@@ -56,7 +56,9 @@ class CaptureStage final : public StageOf<CaptureOptions> {
     return kInfo;
   }
 
-  void run(std::string_view step, StepContext& c) const override { step == "import" ? importCapture(c) : screen(c); }
+  void run(std::string_view step, StepContext& c) const override {
+    step == "import" ? importCapture(c) : screen(c);
+  }
 
  private:
   // The result holds what was understood; pictures stay where they are.
