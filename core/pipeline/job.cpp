@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <deque>
 #include <new>
 #include <thread>
@@ -21,6 +22,10 @@ std::uint64_t peakMemoryBytes() {
   struct rusage usage {};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+bool readsPictures(const StepInfo& step) {
+  return std::find(step.reads.begin(), step.reads.end(), Reads::Pictures) != step.reads.end();
 }
 
 // A bad frame does not stop the others; a full disk or memory would stop them too.
@@ -92,10 +97,14 @@ void Job::runProjectSteps(const RunPlan& plan) {
 void Job::runFrames(const RunPlan& plan) {
   std::deque<FrameIndex> todo(plan.frames.begin(), plan.frames.end());
   pending_.insert(plan.frames.begin(), plan.frames.end());
+  for (const std::string& step : plan.frame_steps) {
+    if (readsPictures(project_.setup().stages.step(step))) picture_steps_.push_back(step);
+  }
   std::size_t busy_in_a_row = 0;
   while (!todo.empty()) {
     const FrameIndex frame = todo.front();
     todo.pop_front();
+    next_ = todo.empty() ? std::nullopt : std::optional(todo.front());
     if (runFrame(plan, frame) != Ended::Busy) {
       pending_.erase(frame);
       busy_in_a_row = 0;
@@ -169,7 +178,7 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
   const std::optional<FileLock> lease = project_.store().tryLease(key);
   if (!lease) return Ended::Busy;
   if (project_.store().verified(key)) return reuse();  // published between the look and the lease
-  compute(now_, *ingredients, key);
+  computeWithin(now_, *ingredients, key);
   return Ended::Computed;
 }
 
@@ -218,6 +227,29 @@ double Job::weightOf(const RunPlan& plan, FrameIndex frame) const {
   return sum;
 }
 
+void Job::computeWithin(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key) {
+  try {
+    return compute(ref, ingredients, key);
+  } catch (const std::bad_alloc&) {
+    if (!pictures_ || !pictures_->giveUp()) throw;
+  }
+  logDebug("{}: memory is short; once more, without decoded pictures kept for later", ref.step);
+  compute(ref, ingredients, key);
+}
+
+FrameStore* Job::picturesFor(FrameIndex frame) {
+  if (!pictures_) pictures_ = std::make_unique<FrameStore>(project_.capture());
+  if (pictures_of_ == frame) return pictures_.get();
+  pictures_of_ = frame;
+  pictures_->expect(std::nullopt);
+  try {
+    if (next_ && project_.lacksAny(picture_steps_, *next_)) pictures_->expect(next_);
+  } catch (const Error& e) {
+    logDebug("no pictures are decoded ahead: {}", e.what());  // said again when it is the frame's turn
+  }
+  return pictures_.get();
+}
+
 void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key) {
   if (!log_) log_ = std::make_unique<SessionLog>(project_.folder());
   step_started_ = Clock::now();
@@ -264,6 +296,7 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
     if (const auto key = upstream.find(previousName(step)); key != upstream.end())
       context.previous[step] = resultOf(key->first, key->second, ref);
   }
+  if (ref.frame && readsPictures(info)) context.frames = picturesFor(frame);
   context.is_later = record.ingredients.later;
   project_.makeStage(stageOf(ref.step))->run(info.id, context);
   record.program_version = kProgramVersion;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/slot.h"
+#include "core/pipeline/frame_store.h"
 #include "core/pipeline/job_event.h"
 #include "core/pipeline/project.h"
 #include "core/pipeline/run_plan.h"
@@ -57,6 +58,9 @@ class Job {
   void build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record);
   std::filesystem::path resultOf(const std::string& step, const Digest& key, const StepRef& reader) const;
   void checkInputs(const StepRef& ref, const KeyIngredients& before) const;
+  // Computes once more without pictures held in memory when there is too little of it.
+  void computeWithin(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
+  FrameStore* picturesFor(FrameIndex frame);
   void failFrame(const StepRef& ref, const std::string& message);
   void acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds);
   void reportProgress(const StepRef& ref, const ProgressReport& report);
@@ -77,7 +81,10 @@ class Job {
   std::set<std::pair<std::string, int>> stages_told_;
   std::set<FrameIndex> pending_;            // frames that this run has not finished
   std::map<FrameIndex, Digest> waits_for_;  // the result of the frame before that each busy one lacked
-  StepRef now_;                             // the step at work, for messages
+  std::vector<std::string> picture_steps_;  // of a frame
+  std::unique_ptr<FrameStore> pictures_;
+  std::optional<FrameIndex> pictures_of_, next_;  // the frame whose turn it is, and the one after it
+  StepRef now_;                                   // the step at work, for messages
   std::unique_ptr<SessionLog> log_;
   int sink_ = 0;
   std::mutex warnings_mutex_;

@@ -106,6 +106,9 @@ class Project {
   KeyIngredients ingredients(std::string_view step, FrameIndex frame) const;
   Digest key(std::string_view step, FrameIndex frame) const;
   void forgetKeys() const { memo_.clear(); }
+  // Whether the frame has no result yet of one of the steps. Keeps no keys: before its turn its files may
+  // change.
+  bool lacksAny(const std::vector<std::string>& steps, FrameIndex frame) const;
   StepState state(std::string_view step, FrameIndex frame) const;
   // Of a whole stage for a frame: the least finished of its steps that are for it; Done when there are none.
   StepState stageState(std::string_view stage, FrameIndex frame) const;

@@ -186,6 +186,15 @@ Digest Project::key(std::string_view step, FrameIndex frame) const {
   return keyAt(id, take, frame);
 }
 
+bool Project::lacksAny(const std::vector<std::string>& steps, FrameIndex frame) const {
+  const std::map<KeyMemo::Place, Digest> kept = memo_.keys;
+  const bool lacks = std::any_of(steps.begin(), steps.end(), [&](const std::string& step) {
+    return applies(step, frame) && !store_->has(keyOf(ingredients(step, frame)));
+  });
+  memo_.keys = kept;
+  return lacks;
+}
+
 // --- States ---
 
 std::string Project::blockedReason(std::string_view stage) const {

@@ -21,6 +21,7 @@
 namespace beam {
 
 class ComputeDevice;
+class FrameStore;
 
 // What of the user's files a step reads itself; it enters the key of the step.
 enum class Reads {
@@ -85,6 +86,7 @@ struct StepContext {
   // Of a later frame: full step id -> folder of the result of the frame before, verified.
   std::map<std::string, std::filesystem::path> previous = {};
   bool is_later = false;
+  FrameStore* frames = nullptr;  // pictures already decoded; null: whoever wants some loads them
 
   const std::filesystem::path& input(const std::string& step) const { return inputs.at(step); }
   // Whether the step builds on the frame before; never for the first of a take.

@@ -34,35 +34,50 @@ FrameView shrunk(const FrameView& view, int factor) {
           view.mask.empty() ? Image<std::uint8_t>() : shrink<std::uint8_t, int>(view.mask, factor)};
 }
 
+FrameView loadFrameView(const CaptureSet& capture, ViewIndex view, FrameIndex frame, int downscale,
+                        const Progress& progress) {
+  if (progress.stopRequested()) return {};
+  const View& v = capture.views[static_cast<std::size_t>(view.value)];
+  FrameView full{v.name, v.camera, capture.source->photo(view, frame), {}};
+  if (progress.stopRequested()) return {};
+  full.mask = capture.source->mask(view, frame);
+  return downscale <= 1 ? std::move(full) : shrunk(full, downscale);
+}
+
+void judgeFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
+                     const std::vector<std::string>& problems, std::size_t readable) {
+  const std::string& name = capture.frames[static_cast<std::size_t>(frame.value)];
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    if (!problems[i].empty())
+      logWarning("{}; camera {} is left out of frame {}", problems[i], capture.views[i].name, name);
+  }
+  if (readable < 2 && split == Split::Train) {
+    throw Error(
+        Error::Kind::Data,
+        fmt::format("frame {}: expected at least 2 readable training pictures, found {}", name, readable));
+  }
+}
+
 std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split, int downscale,
                                       const Progress& progress) {
   std::vector<FrameView> loaded(capture.views.size());
-  std::vector<std::string> problem(capture.views.size());
+  std::vector<std::string> problems(capture.views.size());
   parallelFor(capture.views.size(), 1, [&](std::size_t i, std::size_t) {
-    const View& view = capture.views[i];
     const ViewIndex index{static_cast<std::int32_t>(i)};
-    if (progress.stopRequested() || view.split != split || !capture.source->has(index, frame)) return;
+    if (progress.stopRequested() || capture.views[i].split != split || !capture.source->has(index, frame))
+      return;
     try {
-      const FrameView v{view.name, view.camera, capture.source->photo(index, frame),
-                        capture.source->mask(index, frame)};
-      loaded[i] = shrunk(v, downscale);
+      loaded[i] = loadFrameView(capture, index, frame, downscale, progress);
     } catch (const Error& e) {
-      problem[i] = e.what();
+      problems[i] = e.what();
     }
   });
   progress.check();
   std::vector<FrameView> views;
-  for (std::size_t i = 0; i < loaded.size(); ++i) {
-    if (!problem[i].empty())
-      logWarning("{}; camera {} is left out of frame {}", problem[i], capture.views[i].name,
-                 capture.frames[frame.value]);
-    if (!loaded[i].photo.empty()) views.push_back(std::move(loaded[i]));
+  for (FrameView& view : loaded) {
+    if (!view.photo.empty()) views.push_back(std::move(view));
   }
-  if (views.size() < 2 && split == Split::Train) {
-    throw Error(Error::Kind::Data,
-                fmt::format("frame {}: expected at least 2 readable training pictures, found {}",
-                            capture.frames[frame.value], views.size()));
-  }
+  judgeFrameViews(capture, frame, split, problems, views.size());
   return views;
 }
 

@@ -23,6 +23,15 @@ struct FrameView {
 std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex frame, Split split, int downscale,
                                       const Progress& progress);
 
+// One of them; empty when a stop is requested. Throws Error{Data} when the picture or the mask cannot be
+// read.
+FrameView loadFrameView(const CaptureSet& capture, ViewIndex view, FrameIndex frame, int downscale,
+                        const Progress& progress);
+// Warns of each picture that could not be read, in the order of the views: `problems` says why, a text a
+// view, empty for the others. Throws what loadFrameViews throws when only `readable` views are left.
+void judgeFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
+                     const std::vector<std::string>& problems, std::size_t readable);
+
 // The view as a camera of `factor` times fewer pixels a side would have seen it (area average).
 FrameView shrunk(const FrameView& view, int factor);
 

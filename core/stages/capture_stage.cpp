@@ -83,7 +83,8 @@ class CaptureStage final : public StageOf<CaptureOptions> {
     FrameScreening kept{options_.screen, 0, {}, {}};
     Screening found;
     if (options_.screen) {
-      const std::vector<FrameView> views = readableViews(c);
+      const LentViews lent = readableViews(c);
+      const std::vector<FrameView>& views = lent.all();
       kept.cameras = views.size();
       found = screenViews(views, {}, c.progress);
       const auto first_kept = found.suspects.begin() + static_cast<std::ptrdiff_t>(found.to_leave_out);

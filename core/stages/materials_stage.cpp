@@ -57,7 +57,8 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
 
   void bake(StepContext& c) const {
     const Environment light = makeEnvironment(readRadiance(c.input("light.import") / kEnvironmentFile));
-    const std::vector<FrameView> views = trainingViews(c);
+    const LentViews lent = trainingViews(c);
+    const std::vector<FrameView>& views = lent.all();
     const std::vector<MaterialMaps> maps =
         bakeMaterials(views, cloudOf(c), light, options_.bake, c.device, c.progress);
     const std::filesystem::path folder = c.folder / kMapsFolder;

@@ -81,8 +81,9 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
 
  private:
   void seed(StepContext& c) const {
+    const LentViews lent = trainingViews(c);
     const PointCloud seeds =
-        seedPoints(trainingViews(c), c.capture.seed_points, seedCount(), options_.fit.seed, c.progress);
+        seedPoints(lent.all(), c.capture.seed_points, seedCount(), options_.fit.seed, c.progress);
     writePointsPly(c.folder / kSeedsFile, seeds);
     c.scores["points"] = static_cast<double>(seeds.position_m.size());
   }
@@ -90,7 +91,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
   int seedCount() const { return static_cast<int>(options_.fit.seed_share * options_.fit.cap); }
 
   void fit(StepContext& c) const {
-    const std::vector<FrameView> views = trainingViews(c);
+    const LentViews lent = trainingViews(c);
+    const std::vector<FrameView>& views = lent.all();
     if (!c.later()) {
       const PointCloud seeds = readPointsPly(c.input("surface.seed") / kSeedsFile);
       return keep(c, fitAppearance(views, seeds, options_.fit, c.device, c.progress, c.preview));
@@ -106,7 +108,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
   }
 
   void refine(StepContext& c) const {
-    const std::vector<FrameView> views = trainingViews(c);
+    const LentViews lent = trainingViews(c);
+    const std::vector<FrameView>& views = lent.all();
     const std::filesystem::path& fitted = c.input("surface.fit");
     GaussianCloud cloud = readSplatPly(fitted / kCloudFile).cloud;
     if (!c.later() || restarted(c)) {
@@ -153,7 +156,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     std::vector<ViewScore> scores;
     for (const bool held_out : {false, true}) {
       Progress part = c.progress.part(0.48, held_out ? "held-out views" : "training views");
-      const std::vector<FrameView> views = held_out ? heldOutViews(c) : trainingViews(c);
+      const LentViews lent = held_out ? heldOutViews(c) : trainingViews(c);
+      const std::vector<FrameView>& views = lent.all();
       for (ViewScore& s : scoreViews(views, held_out, cloud, c.device, part)) scores.push_back(std::move(s));
       const SplitScore split = meanOf(scores, held_out);
       if (split.n == 0) continue;
@@ -163,7 +167,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
       c.scores["psnr_worst" + name] = scores[split.worst].score.psnr;
     }
     Progress part = c.progress.part(0.04, "views left out of the fit");
-    for (ViewScore& s : scoreViews(leftOutViews(c), false, cloud, c.device, part)) {
+    const LentViews left_out = leftOutViews(c);
+    for (ViewScore& s : scoreViews(left_out.all(), false, cloud, c.device, part)) {
       s.left_out = true;
       scores.push_back(std::move(s));
     }

@@ -62,7 +62,8 @@ class TrackStage final : public StageOf<TrackOptions> {
   }
 
   void run(std::string_view, StepContext& c) const override {
-    const std::vector<FrameView> views = trainingViews(c);
+    const LentViews lent = trainingViews(c);
+    const std::vector<FrameView>& views = lent.all();
     if (!c.later()) return start(c, views, false);
     const std::filesystem::path& before = *c.previousResult(kJointsStep);
     const TrackNote note = readTrackNote(before);

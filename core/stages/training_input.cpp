@@ -6,6 +6,15 @@
 namespace beam {
 namespace {
 
+LentViews viewsThat(const StepContext& context, const FrameStore::Wanted& wanted) {
+  const int downscale = trainingDownscale(context);
+  if (context.frames) return context.frames->lend(context.frame, downscale, wanted, context.progress);
+  std::vector<FrameView> views =
+      loadFrameViews(context.capture, context.frame, Split::Train, downscale, context.progress);
+  std::erase_if(views, [&](const FrameView& v) { return !wanted(v.name); });
+  return LentViews(std::move(views));
+}
+
 FrameScreening screeningOf(const StepContext& context) {
   return readScreening(context.input("capture.screen"));
 }
@@ -16,21 +25,19 @@ int trainingDownscale(const StepContext& context) {
   return std::get<int>(context.setting("capture.downscale"));
 }
 
-std::vector<FrameView> readableViews(const StepContext& context) {
-  return loadFrameViews(context.capture, context.frame, Split::Train, trainingDownscale(context),
-                        context.progress);
+LentViews readableViews(const StepContext& context) {
+  return viewsThat(context, [](const std::string&) { return true; });
 }
 
-std::vector<FrameView> heldOutViews(const StepContext& context) {
-  return loadFrameViews(context.capture, context.frame, Split::Test, trainingDownscale(context),
-                        context.progress);
+// One step of a frame asks for them, once: not worth keeping.
+LentViews heldOutViews(const StepContext& context) {
+  return LentViews(loadFrameViews(context.capture, context.frame, Split::Test, trainingDownscale(context),
+                                  context.progress));
 }
 
-std::vector<FrameView> trainingViews(const StepContext& context) {
+LentViews trainingViews(const StepContext& context) {
   const FrameScreening screening = screeningOf(context);
-  std::vector<FrameView> views = readableViews(context);
-  std::erase_if(views, [&](const FrameView& v) { return screening.leavesOut(v.name); });
-  return views;
+  return viewsThat(context, [&](const std::string& name) { return !screening.leavesOut(name); });
 }
 
 std::vector<View> trainingCalibration(const StepContext& context) {
@@ -49,12 +56,10 @@ std::vector<Camera> trainingCameras(const StepContext& context) {
   return cameras;
 }
 
-std::vector<FrameView> leftOutViews(const StepContext& context) {
+LentViews leftOutViews(const StepContext& context) {
   const FrameScreening screening = screeningOf(context);
-  if (screening.left_out.empty()) return {};
-  std::vector<FrameView> views = readableViews(context);
-  std::erase_if(views, [&](const FrameView& v) { return !screening.leavesOut(v.name); });
-  return views;
+  if (screening.left_out.empty()) return LentViews({});
+  return viewsThat(context, [&](const std::string& name) { return screening.leavesOut(name); });
 }
 
 }  // namespace beam

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/pipeline/frame_store.h"
 #include "core/pipeline/stage.h"
 #include "core/scene/frame_views.h"
 
@@ -12,16 +13,16 @@ namespace beam {
 // The step must have "capture.import" among its inputs: its key then holds the downscale.
 int trainingDownscale(const StepContext& context);
 // Every training view with a readable picture, good or bad.
-std::vector<FrameView> readableViews(const StepContext& context);
+LentViews readableViews(const StepContext& context);
 // For scores, never for fitting; the step reads Reads::HeldOut.
-std::vector<FrameView> heldOutViews(const StepContext& context);
+LentViews heldOutViews(const StepContext& context);
 
 // What a frame is fitted to: the step must have "capture.screen" among its inputs, too. Without the cameras
 // that it leaves out of this frame.
-std::vector<FrameView> trainingViews(const StepContext& context);
+LentViews trainingViews(const StepContext& context);
 std::vector<View> trainingCalibration(const StepContext& context);
 std::vector<Camera> trainingCameras(const StepContext& context);
 // The readable views that the frame is fitted without; for scores.
-std::vector<FrameView> leftOutViews(const StepContext& context);
+LentViews leftOutViews(const StepContext& context);
 
 }  // namespace beam
