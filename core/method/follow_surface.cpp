@@ -18,11 +18,6 @@ constexpr int kNeighbors = 8;   // of the binding and of the skin graph (methods
 constexpr double kReach = 1.8;  // length of their weights in mean spacings: 0.02 m of methods 3.2
 constexpr float kDecay = 0.1f;  // learning rates end at this share
 
-Anchors boundTo(const Pose& skin, const Pose& joints) {
-  return anchorTo(skin.position_m, joints.position_m, kNeighbors,
-                  static_cast<float>(kReach * meanSpacing(joints.position_m)));
-}
-
 Anchors graphOf(const Pose& skin) {
   return neighborGraph(skin.position_m, kNeighbors,
                        static_cast<float>(kReach * meanSpacing(skin.position_m)));
@@ -153,6 +148,11 @@ int refineStart(const FollowSurfaceOptions& o) {
 }
 
 }  // namespace
+
+Anchors boundTo(const Pose& skin, const Pose& joints) {
+  return anchorTo(skin.position_m, joints.position_m, kNeighbors,
+                  static_cast<float>(kReach * meanSpacing(joints.position_m)));
+}
 
 Pose carriedJoints(const Pose& tracked_before, const Pose& corrected_before, const Pose& tracked) {
   Pose out = tracked;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/method/fit_surface.h"
+#include "core/optim/anchors.h"
 #include "core/scene/pose.h"
 
 namespace beam {
@@ -45,6 +46,9 @@ struct FollowInput {
   const Pose& rest_joints;      // on the rest frame
   const Pose& joints;           // pose to start from in frame t: carriedJoints
 };
+
+// What the skin hangs on: its nearest joints, both at rest.
+Anchors boundTo(const Pose& skin, const Pose& joints);
 
 // The tracker's joints of this frame with the correction that the skin of the frame before found for its own:
 // per joint T_t T_{t-1}^-1 C_{t-1}, T tracked, C corrected.
