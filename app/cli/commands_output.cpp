@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/io/splat_ply.h"
 #include "core/pipeline/frame_list.h"
-#include "core/pipeline/frame_result.h"
+#include "core/stages/interpolated_frame.h"
 #include "core/stages/render_channels.h"
 
 namespace beam {
@@ -29,12 +29,24 @@ bool wantsWorld(const std::string& frame_of) {
   throw Error(Error::Kind::Usage, fmt::format("--frame-of expects capture or world, found \"{}\"", frame_of));
 }
 
+// Names those of the frames that are interpolated.
+void tellInterpolated(const Project& project, const std::vector<FrameIndex>& frames, Console& console) {
+  std::vector<std::string> names;
+  for (const FrameIndex f : frames) {
+    if (solvedAround(project, f))
+      names.push_back(project.capture().frames[static_cast<std::size_t>(f.value)]);
+  }
+  if (!names.empty())
+    console.print(fmt::format("interpolated, not solved: frames {}", fmt::join(names, ", ")));
+}
+
 int runRender(const RenderFlags& flags, CommandContext& context) {
   const Project project = Project::open(flags.project, context.services.pipeline);
   RenderRequest request;
   request.channels = flags.channels;
   request.views = selectViews(flags.cameras, project.capture());
-  request.frames = selectSolvedFrames(flags.frames, project);
+  request.frames = selectSolvedFrames(flags.frames, project, true);
+  request.interpolate = true;
   request.world_frame = wantsWorld(flags.frame_of);
   request.out = flags.out;
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
@@ -46,6 +58,7 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
                                     fmt::join(flags.channels, ", "), request.views.size(),
                                     request.views.size() == 1 ? "" : "s", request.frames.size(),
                                     request.frames.size() == 1 ? "" : "s", flags.out));
+  tellInterpolated(project, request.frames, context.console);
   return 0;
 }
 
@@ -58,7 +71,7 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
     throw Error(Error::Kind::Usage, fmt::format("--format expects ply, found \"{}\"", flags.format));
   }
   const Project project = Project::open(flags.project, context.services.pipeline);
-  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, project);
+  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, project, true);
   const bool world = wantsWorld(flags.frame_of);
   const dmat3 to_frame = world ? dmat3(1.0) : glm::transpose(worldFromCapture(project.capture().up));
   std::filesystem::create_directories(flags.out);
@@ -66,7 +79,7 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
   progress.expect(static_cast<std::int64_t>(frames.size()));
   for (const FrameIndex frame : frames) {
     const std::string& name = project.capture().frames[frame.value];
-    const std::optional<FrameResult> r = loadFrameResult(project, frame);
+    const std::optional<FrameResult> r = loadShownFrame(project, frame);
     if (!r) throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", name));
     const GaussianCloud cloud = world ? r->cloud : rotated(r->cloud, to_frame);
     std::optional<Materials> materials = r->materials;
@@ -79,6 +92,7 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
   context.console.endProgress();
   context.console.print(
       fmt::format("wrote {} frame{} to \"{}\"", frames.size(), frames.size() == 1 ? "" : "s", flags.out));
+  tellInterpolated(project, frames, context.console);
   return 0;
 }
 
@@ -94,7 +108,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
                    fmt::format("Some of {}", fmt::join(renderChannelNames(), ", ")))
       ->delimiter(',');
   command->add_option("--cameras", flags->cameras, "test, train, all or camera names");
-  command->add_option("--frames", flags->frames, "Frames: 0-7, 1,5, 1-9x2 or all that are solved");
+  command->add_option("--frames", flags->frames,
+                      "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");
   command->add_option("--environment", flags->environment, "Panorama for the channel relight");
   command->add_option("--frame-of", flags->frame_of, "Axes of normals and meshes: capture or world");
   command->add_option("--out", flags->out, "Folder for the pictures")->required();
@@ -109,7 +124,8 @@ void addExportCommand(CLI::App& app, CommandContext& context) {
   command->add_option("PROJECT", flags->project, "Project folder")->required();
   command->add_option("--format", flags->format, "ply: one splat file a frame");
   command->add_option("--out", flags->out, "Folder for the files")->required();
-  command->add_option("--frames", flags->frames, "Frames: 0-7, 1,5, 1-9x2 or all that are solved");
+  command->add_option("--frames", flags->frames,
+                      "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");
   command->add_option("--frame-of", flags->frame_of, "Axes: capture or world");
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runExport(*flags, context); }; });

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/frame_list.h"
+#include "core/stages/interpolated_frame.h"
 
 namespace beam {
 
@@ -45,7 +46,8 @@ std::vector<ViewIndex> selectViews(const std::string& words, const CaptureSet& c
   return chosen;
 }
 
-std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Project& project) {
+std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Project& project,
+                                           bool interpolated) {
   if (list != "all") return parseFrameList(list, project.capture().frames);
   std::vector<FrameIndex> solved;
   for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
@@ -53,7 +55,7 @@ std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Projec
     // Later frames of a take are not fitted anew.
     const bool is_solved = project.state("surface.fit", frame) == StepState::Done ||
                            project.state("surface.refine", frame) == StepState::Done;
-    if (is_solved) solved.push_back(frame);
+    if (is_solved || (interpolated && solvedAround(project, frame))) solved.push_back(frame);
   }
   if (solved.empty()) {
     throw Error(Error::Kind::Data,

@@ -13,7 +13,9 @@ namespace beam {
 // choice.
 std::vector<ViewIndex> selectViews(const std::string& words, const CaptureSet& capture);
 
-// "all": every frame with Gaussians; else a frame list. Throws Error{Data} when nothing is solved.
-std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Project& project);
+// "all": every frame with Gaussians, `interpolated` ones too where that is true; else a frame list. Throws
+// Error{Data} when nothing is solved.
+std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Project& project,
+                                           bool interpolated = false);
 
 }  // namespace beam

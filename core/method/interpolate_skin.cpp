@@ -88,7 +88,7 @@ void takeSides(std::vector<dquat>& turns, std::span<const vec3> at) {
   }
   // A part without any clear joint goes the way of its first.
   for (std::size_t k = 0;; ++k) {
-    for (; !links.empty();) {
+    while (!links.empty()) {
       const Link link = links.top();
       links.pop();
       if (decided[link.to]) continue;

@@ -26,7 +26,8 @@ inline constexpr const char* kMapsFolder = "maps";               // <camera>.<ma
 struct FrameResult {
   GaussianCloud cloud;
   std::optional<Materials> materials;
-  bool refined = false;  // geometry is final; false: appearance only
+  bool refined = false;       // geometry is final; false: appearance only
+  bool interpolated = false;  // between two solved frames, without a result of its own
 };
 
 // The most finished Gaussians of the frame: with materials, else refined, else fitted; empty when there are

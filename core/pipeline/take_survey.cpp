@@ -31,6 +31,31 @@ std::set<Digest> keysIn(const fs::path& folder) {
   return keys;
 }
 
+bool followsFrames(const StageInfo& stage) {
+  return std::any_of(stage.steps.begin(), stage.steps.end(),
+                     [](const StepInfo& step) { return !step.later.previous.empty(); });
+}
+
+// Frames without results between two that have some, in the stages whose frames build on each other.
+void markInterpolated(const Project& project, TakeSurvey& survey) {
+  const std::vector<Take> takes = project.takes();
+  const std::vector<Digest> own = survey.stamps;
+  for (std::size_t f = 0; f < own.size(); ++f) {
+    const auto between = betweenOf(takes, FrameIndex{static_cast<std::int32_t>(f)});
+    if (!between) continue;
+    const auto a = static_cast<std::size_t>(between->before.value),
+               b = static_cast<std::size_t>(between->after.value);
+    if (own[a] == Digest{} || own[b] == Digest{}) continue;
+    survey.stamps[f] = digestOf("between " + own[f].hex() + own[a].hex() + own[b].hex());
+    for (std::size_t i = 0; i < survey.lanes.size(); ++i) {
+      std::vector<CellState>& cells = survey.lanes[i].cells;
+      if (cells[f] == CellState::Empty && cells[a] == CellState::Done && cells[b] == CellState::Done &&
+          followsFrames(project.setup().stages.infos()[i]))
+        cells[f] = CellState::Interpolated;
+    }
+  }
+}
+
 }  // namespace
 
 const SurveyCurve* TakeSurvey::curve(std::string_view name) const {
@@ -140,6 +165,7 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
     survey.lanes.push_back(std::move(lane));
   }
   for (const std::string& stamp : stamps) survey.stamps.push_back(stamp.empty() ? Digest{} : digestOf(stamp));
+  markInterpolated(project, survey);
   for (auto& [name, values] : pass.curves) survey.curves.push_back({name, std::move(values)});
   return survey;
 }

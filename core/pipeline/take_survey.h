@@ -20,8 +20,9 @@ enum class CellState {
   Done,
   Stale,  // there is a result, made with other settings or inputs
   Failed,
-  Blocked,    // needs something the project does not have
-  NotNeeded,  // none of its steps is for this frame of its take
+  Blocked,       // needs something the project does not have
+  Interpolated,  // nothing of its own: lies between two of a take with a stride that are done
+  NotNeeded,     // none of its steps is for this frame of its take
 };
 
 struct SurveyLane {
@@ -40,7 +41,9 @@ struct TakeSurvey {
   std::vector<std::string> frames;
   std::vector<SurveyLane> lanes;    // in pipeline order
   std::vector<SurveyCurve> curves;  // of results with the settings in force, by step and name
-  std::vector<Digest> stamps;  // by frame: changes when a finished result comes or goes; zero: there is none
+  // By frame: changes when a finished result comes or goes, of its own or of those that it lies between;
+  // zero: there is none.
+  std::vector<Digest> stamps;
 
   const SurveyCurve* curve(std::string_view name) const;  // null: there is none
 };

@@ -112,6 +112,17 @@ Take takeOf(const std::vector<Take>& takes, FrameIndex frame) {
   return owner == takes.rend() ? Take{frame, frame, 1} : *owner;
 }
 
+std::optional<Between> betweenOf(const std::vector<Take>& takes, FrameIndex frame) {
+  for (auto take = takes.rbegin(); take != takes.rend(); ++take) {
+    if (frame.value <= take->first.value || frame.value >= take->last.value || take->holds(frame)) continue;
+    const int past = (frame.value - take->first.value) % take->step;
+    const Between found{
+        {frame.value - past}, {frame.value - past + take->step}, static_cast<double>(past) / take->step};
+    if (takeOf(takes, found.before) == *take && takeOf(takes, found.after) == *take) return found;
+  }
+  return std::nullopt;
+}
+
 std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every) {
   std::vector<Take> takes;
   for (std::size_t begin = 0, end = 0; begin < frames.size(); begin = end) {

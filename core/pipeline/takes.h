@@ -38,6 +38,15 @@ std::vector<SavedTake> saveTakes(const std::vector<Take>& takes, const std::vect
 // The take that owns `frame`.
 Take takeOf(const std::vector<Take>& takes, FrameIndex frame);
 
+// Where a frame stands between two members of a take with a stride: `share` of the way from one to the next.
+struct Between {
+  FrameIndex before, after;
+  double share = 0;
+  bool operator==(const Between&) const = default;
+};
+// Of the latest such take that owns both; none where `frame` stands in none.
+std::optional<Between> betweenOf(const std::vector<Take>& takes, FrameIndex frame);
+
 // What a run that names frames asks for: each run of consecutive ones, of which every `every`-th is taken.
 // `frames` ascend.
 std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every);

@@ -7,11 +7,13 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/math/color.h"
 #include "core/pipeline/frame_result.h"
 #include "core/render/deferred.h"
+#include "core/stages/interpolated_frame.h"
 
 namespace beam {
 namespace {
@@ -63,9 +65,11 @@ class ChannelWriter {
     const bool pictures = std::any_of(request_.channels.begin(), request_.channels.end(),
                                       [](const auto& c) { return c != "mesh"; });
     if (!pictures) return progress.step(static_cast<std::int64_t>(request_.views.size()));
-    const std::optional<FrameResult> result = loadFrameResult(project_, frame);
+    const std::optional<FrameResult> result =
+        request_.interpolate ? loadShownFrame(project_, frame) : loadFrameResult(project_, frame);
     if (!result)
       throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", name));
+    if (result->interpolated) logInfo("frame {} is interpolated", name);
     for (const std::string& channel : request_.channels) {
       if (!needsMaterials(channel) || result->materials) continue;
       throw Error(
@@ -91,6 +95,8 @@ class ChannelWriter {
 
   void mesh(FrameIndex frame, const std::string& name) const {
     std::optional<Mesh> m = loadFrameMesh(project_, frame);
+    if (!m && request_.interpolate && solvedAround(project_, frame))
+      return logInfo("frame {} is interpolated: it has no mesh", name);
     if (!m) throw Error(Error::Kind::Data, fmt::format("frame {} has no mesh yet: run Surface first", name));
     for (vec3& v : m->vertices) v = vec3(to_frame_ * dvec3(v));
     fs::create_directories(request_.out / "mesh");

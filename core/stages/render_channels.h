@@ -19,6 +19,7 @@ struct RenderRequest {
   std::vector<ViewIndex> views;
   std::vector<FrameIndex> frames;
   std::vector<std::filesystem::path> environments;  // for "relight": a folder relight_<stem> each
+  bool interpolate = false;  // frames without a result between two of a take with a stride, too
   bool world_frame = false;  // normals and meshes in world axes instead of the capture's
   std::filesystem::path out;
 };

@@ -33,6 +33,16 @@ TEST(Takes, TheFrameBeforeIsOneStrideAwayAndTheFirstHasNone) {
   EXPECT_EQ(take(2, 10, 4).count(), 3);
 }
 
+TEST(Takes, AFrameLiesBetweenMembersOfATakeWithAStrideThatOwnsThem) {
+  const Takes scout = {take(0, 3), take(0, 8, 4)};
+  EXPECT_EQ(betweenOf(scout, {1}), (Between{{0}, {4}, 0.25}));
+  EXPECT_EQ(betweenOf(scout, {6}), (Between{{4}, {8}, 0.5}));
+  for (const int member_or_outside : {0, 4, 8, 9}) EXPECT_FALSE(betweenOf(scout, {member_or_outside}));
+  EXPECT_FALSE(betweenOf({take(0, 8, 4), take(4, 6)}, {2})) << "frame 4 is of another take";
+  EXPECT_TRUE(betweenOf({take(0, 8, 4), take(2, 2)}, {2}));
+  EXPECT_FALSE(betweenOf({take(0, 8)}, {2}));
+}
+
 TEST(Takes, NamedFramesMakeATakeOfEachConsecutiveRun) {
   EXPECT_THAT(takesOfFrames(framesOf({0, 1, 2, 5, 8, 9}), 1),
               ElementsAre(take(0, 2), take(5, 5), take(8, 9)));

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/stages/interpolated_frame.h"
+
+#include <utility>
+
+#include "core/io/mesh_ply.h"
+#include "core/io/splat_ply.h"
+#include "core/method/interpolate_skin.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFit = "surface.fit";
+constexpr const char* kRefine = "surface.refine";
+constexpr const char* kMaterials = "materials.fit";
+constexpr const char* kJoints = "track.joints";
+
+// The results of one frame that an interpolation reads.
+struct Solved {
+  fs::path skin, joints;
+  std::optional<fs::path> materials;
+  bool refined = false;
+
+  // Carried there from the frame before; false: fitted anew.
+  bool carried() const { return fs::exists(skin / kRestPoseFile); }
+};
+
+std::optional<Solved> solvedAt(const Project& project, FrameIndex frame, const char* step) {
+  const auto skin = project.result(step, frame), joints = project.result(kJoints, frame);
+  if (!skin || !joints) return std::nullopt;
+  return Solved{*skin, *joints, project.result(kMaterials, frame), step == kRefine};
+}
+
+// Both as far as both are solved.
+std::optional<std::pair<Solved, Solved>> solvedPair(const Project& project, const Between& between) {
+  for (const char* step : {kRefine, kFit}) {
+    auto a = solvedAt(project, between.before, step), b = solvedAt(project, between.after, step);
+    if (!a || !b) continue;
+    if (!b->carried()) return std::nullopt;
+    return std::pair(std::move(*a), std::move(*b));
+  }
+  return std::nullopt;
+}
+
+CarriedSkin skinOf(const Solved& solved, GaussianCloud cloud) {
+  if (solved.carried()) {
+    return {std::move(cloud), readPosePly(solved.skin / kRestPoseFile),
+            readPosePly(solved.skin / kJointPoseFile)};
+  }
+  Pose rest = poseOf(cloud);  // a first frame is its own rest
+  return {std::move(cloud), std::move(rest), poseOf(readSplatPly(solved.joints / kJointsFile).cloud)};
+}
+
+FrameResult interpolated(const Solved& a, const Solved& b, double share) {
+  const bool materials = a.materials && b.materials;
+  const auto read = [&](const Solved& s) {
+    return readSplatPly(materials ? *s.materials / kMaterialsFile : s.skin / kCloudFile);
+  };
+  SplatFile from = read(a), to = read(b);
+  FrameResult out{.cloud = interpolateSkin(skinOf(a, std::move(from.cloud)), skinOf(b, std::move(to.cloud)),
+                                           readPosePly(b.joints / kRestPoseFile), share),
+                  .materials = std::nullopt,
+                  .refined = a.refined && b.refined,
+                  .interpolated = true};
+  if (from.materials && to.materials)
+    out.materials = interpolateMaterials(*from.materials, *to.materials, share);
+  return out;
+}
+
+}  // namespace
+
+std::optional<FrameResult> loadShownFrame(const Project& project, FrameIndex frame) {
+  if (auto own = loadFrameResult(project, frame)) return own;
+  const std::optional<Between> between = betweenOf(project.takes(), frame);
+  if (!between) return std::nullopt;
+  const auto pair = solvedPair(project, *between);
+  if (!pair) return std::nullopt;
+  return interpolated(pair->first, pair->second, between->share);
+}
+
+std::optional<Between> solvedAround(const Project& project, FrameIndex frame) {
+  for (const char* step : {kMaterials, kRefine, kFit}) {
+    if (project.result(step, frame)) return std::nullopt;
+  }
+  const std::optional<Between> between = betweenOf(project.takes(), frame);
+  return between && solvedPair(project, *between) ? between : std::nullopt;
+}
+
+}  // namespace beam

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames that a scout run left out, made from the solved ones beside them when they are asked for; nothing of
+// them is kept.
+#pragma once
+
+#include <optional>
+
+#include "core/pipeline/frame_result.h"
+
+namespace beam {
+
+// What to show of the frame: its own result, else one interpolated between its neighbours in a take with a
+// stride; empty when there is neither. The joints may start anew between two frames: then there is nothing.
+std::optional<FrameResult> loadShownFrame(const Project& project, FrameIndex frame);
+
+// The frame has no result of its own and lies between two that have one. Reads no Gaussians.
+std::optional<Between> solvedAround(const Project& project, FrameIndex frame);
+
+}  // namespace beam

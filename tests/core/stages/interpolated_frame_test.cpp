@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames between those of a scout run, over a pipeline whose steps write a stick that turns.
+#include "core/stages/interpolated_frame.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/io/mesh_ply.h"
+#include "core/io/splat_ply.h"
+#include "core/pipeline/take_survey.h"
+#include "core/stages/render_channels.h"
+#include "tests/core/pipeline/fake_pipeline.h"
+
+namespace beam::testing {
+namespace {
+
+using ::testing::ElementsAre;
+
+constexpr float kTurn = 0.3f;  // radians a frame, about +Y
+
+std::vector<StageInfo> stages() {
+  return {{"track",
+           "Track",
+           "",
+           {{.id = "joints",
+             .title = "Joints",
+             .frames = Frames::InTakes,
+             .later = {.previous = {"track.joints"}}}}},
+          {"surface",
+           "Surface",
+           "",
+           {{.id = "fit", .title = "Fit", .later = {.inputs = {"track.joints"}, .previous = {"surface.fit"}}},
+            {.id = "refine",
+             .title = "Refine",
+             .inputs = {"surface.fit"},
+             .later = {.inputs = {"track.joints"}, .previous = {"surface.refine"}}}}},
+          {"materials",
+           "Materials",
+           "",
+           {{.id = "fit",
+             .title = "Fit",
+             .inputs = {"surface.refine"},
+             .later = {.previous = {"materials.fit"}}}}}};
+}
+
+GaussianCloud stickAt(float frame) {
+  const quat turn = glm::angleAxis(kTurn * frame, vec3(0, 1, 0));
+  GaussianCloud cloud;
+  for (int i = 0; i < 12; ++i) {
+    cloud.position_m.push_back(turn *
+                               vec3(0.1f * static_cast<float>(i), 0.01f * static_cast<float>(i % 3), 0));
+    cloud.rotation.push_back(turn);
+  }
+  cloud.scale_m.assign(12, vec3(0.02f));
+  cloud.opacity.assign(12, 0.9f);
+  cloud.color = ShBlock(12, 3);
+  return cloud;
+}
+
+// Frames 0 3 6 solved of eight.
+class Scout : public ::testing::Test {
+ protected:
+  Scout() : house_(stages()) {
+    house_.frame_names = {"000", "001", "002", "003", "004", "005", "006", "007"};
+    house_.hooks.at_step = [this](const std::string& step, StepContext& c) { write(step, c); };
+  }
+
+  Project run(int every) {
+    Project project = house_.newProject();
+    RunRequest request;
+    request.every = every;
+    EXPECT_TRUE(house_.finish(project, request).failed.empty());
+    project.readTakesAgain();
+    return project;
+  }
+
+  void write(const std::string& step, StepContext& c) const {
+    const auto f = static_cast<float>(c.frame.value);
+    if (step == "track.joints") {
+      writeSplatPly(c.folder / kJointsFile, stickAt(f), nullptr);
+      writePosePly(c.folder / kRestPoseFile, poseOf(stickAt(0)));
+      return;
+    }
+    Materials materials{std::vector<float>(12, 0.1f + 0.1f * f), ShBlock(12, 3), ShBlock(12, 1)};
+    if (step == "materials.fit") return writeSplatPly(c.folder / kMaterialsFile, stickAt(f), &materials);
+    writeSplatPly(c.folder / kCloudFile, stickAt(f), nullptr);
+    if (!c.later() || restarts_.contains(c.frame.value)) return;
+    writePosePly(c.folder / kRestPoseFile, poseOf(stickAt(0)));
+    writePosePly(c.folder / kJointPoseFile, poseOf(stickAt(f)));
+  }
+
+  FakeHouse house_;
+  std::set<int> restarts_;
+};
+
+TEST_F(Scout, ShowsWhatLiesBetweenItsFrames) {
+  const Project project = run(3);
+  for (const int f : {1, 2, 4, 5}) {
+    EXPECT_FALSE(loadFrameResult(project, {f})) << "nothing is kept of it";
+    const auto shown = loadShownFrame(project, {f});
+    ASSERT_TRUE(shown) << f;
+    EXPECT_TRUE(shown->interpolated);
+    EXPECT_TRUE(shown->refined);
+    const GaussianCloud expected = stickAt(static_cast<float>(f));
+    for (std::size_t i = 0; i < 12; ++i)
+      EXPECT_LT(glm::length(shown->cloud.position_m[i] - expected.position_m[i]), 1e-5f) << f << " " << i;
+    ASSERT_TRUE(shown->materials);
+    EXPECT_NEAR(shown->materials->roughness[5], 0.1f + 0.1f * static_cast<float>(f), 1e-5);
+    EXPECT_TRUE(solvedAround(project, {f}));
+  }
+}
+
+TEST_F(Scout, LeavesItsOwnFramesAloneAndHasNothingBehindTheLast) {
+  const Project project = run(3);
+  EXPECT_FALSE(loadShownFrame(project, {3})->interpolated);
+  EXPECT_FALSE(solvedAround(project, {3}));
+  EXPECT_FALSE(loadShownFrame(project, {7}));
+  EXPECT_FALSE(solvedAround(project, {7}));
+}
+
+TEST_F(Scout, HasNothingWhereTheJointsStartedAnew) {
+  restarts_ = {6};
+  const Project project = run(3);
+  EXPECT_TRUE(loadShownFrame(project, {2}));
+  EXPECT_FALSE(loadShownFrame(project, {4}));
+  EXPECT_FALSE(solvedAround(project, {4}));
+}
+
+TEST_F(Scout, IsSolvedFrameByFrameInATakeWithoutStride) {
+  const Project project = run(1);
+  EXPECT_FALSE(loadShownFrame(project, {2})->interpolated);
+}
+
+TEST_F(Scout, IsRenderedOnlyWhereThatIsAskedFor) {
+  const Project project = run(3);
+  FakeDevice device;
+  RenderRequest request;
+  request.frames = {FrameIndex{1}};
+  request.out = house_.root() / "out";
+  Progress progress;
+  EXPECT_THROW(renderChannels(project, request, device, progress), Error);
+  request.interpolate = true;
+  EXPECT_NO_THROW(renderChannels(project, request, device, progress));
+}
+
+TEST_F(Scout, IsDrawnAsSuchAndReadAgainWithItsNeighbours) {
+  Project project = run(3);
+  TakeSurveyor surveyor;
+  const TakeSurvey survey = surveyor.survey(project);
+  const CellState done = CellState::Done, between = CellState::Interpolated;
+  const CellState none = CellState::NotNeeded, to_do = CellState::Empty;
+  EXPECT_THAT(survey.lanes[0].cells, ElementsAre(done, none, none, done, none, none, done, none));
+  for (const std::size_t lane : {1, 2}) {
+    EXPECT_THAT(survey.lanes[lane].cells,
+                ElementsAre(done, between, between, done, between, between, done, to_do));
+  }
+  EXPECT_NE(survey.stamps[1], Digest{});
+  EXPECT_NE(survey.stamps[1], survey.stamps[4]);
+  EXPECT_EQ(survey.stamps[7], Digest{});
+  project.set("materials.iterations", 11);
+  const TakeSurvey changed = surveyor.survey(project);
+  EXPECT_NE(changed.stamps[1], survey.stamps[1]);
+  EXPECT_EQ(changed.lanes[1].cells[1], between);
+  EXPECT_EQ(changed.lanes[2].cells[1], CellState::Empty);
+}
+
+}  // namespace
+}  // namespace beam::testing
