@@ -25,6 +25,7 @@ struct FrameValues {
   std::shared_ptr<const GaussianCloud> cloud;  // null: not there yet
   std::shared_ptr<const Materials> materials;
   std::shared_ptr<const Mesh> mesh;
+  bool interpolated = false;  // between two solved frames of a scout run
 };
 
 std::uint64_t bytesOf(const FrameValues& values);

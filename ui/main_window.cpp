@@ -39,7 +39,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kViewNames[] = {"splat", "image", "scene"};
-constexpr const char* kScopeNames[] = {"frame", "range", "take"};
+constexpr const char* kScopeNames[] = {"frame", "range", "take", "scout"};
 
 QString machineText(const StudioServices& services) {
   const double memory_gb =
@@ -63,7 +63,7 @@ std::optional<StudioView> studioViewNamed(std::string_view name) {
 }
 
 std::optional<RunScope> runScopeNamed(std::string_view name) {
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 4; ++i) {
     if (name == kScopeNames[i]) return static_cast<RunScope>(i);
   }
   return std::nullopt;

@@ -11,6 +11,7 @@
 #include "ui/player.h"
 #include "ui/project_model.h"
 #include "ui/sample_maker.h"
+#include "ui/scout_dialog.h"
 #include "ui/timeline_lanes.h"
 #include "viewers/view_state.h"
 
@@ -33,8 +34,8 @@ class StartPage;
 class TimelinePanel;
 
 enum class StudioView { Splat, Image, Scene };
-enum class RunScope { Frame, Range, Take };
-std::optional<RunScope> runScopeNamed(std::string_view name);      // "frame", "range", "take"
+enum class RunScope { Frame, Range, Take, Scout };
+std::optional<RunScope> runScopeNamed(std::string_view name);      // "frame", "range", "take", "scout"
 std::optional<StudioView> studioViewNamed(std::string_view name);  // "splat", "image", "scene"
 
 class MainWindow final : public QMainWindow {
@@ -48,8 +49,8 @@ class MainWindow final : public QMainWindow {
   // A capture, a project or a panorama.
   void open(const std::filesystem::path& path);
   void showView(StudioView view);
-  // `until` empty: every stage.
-  void run(const std::string& until = {}, RunScope scope = RunScope::Frame);
+  // `until` empty: every stage. `every`: of a scout, which takes every so manieth frame of the range.
+  void run(const std::string& until = {}, RunScope scope = RunScope::Frame, int every = kScoutEvery);
   void cancelRun();
 
   ProjectModel& model() { return model_; }
@@ -100,6 +101,7 @@ class MainWindow final : public QMainWindow {
   void showStatus();
   void say(const QString& title, const QString& text);
 
+  void scout();
   void openCapture();
   void openProject();
   void openSample();
@@ -120,6 +122,7 @@ class MainWindow final : public QMainWindow {
   RunOverlay run_;           // the run that is going on
   bool previewing_ = false;  // of the shown frame
   bool full_size_play_ = false;
+  int scout_every_ = kScoutEvery;  // last chosen
 
   StageRail* rail_ = nullptr;
   RunBar* run_bar_ = nullptr;

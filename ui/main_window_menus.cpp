@@ -60,6 +60,7 @@ void MainWindow::makeMenus() {
   QMenu* process = menuBar()->addMenu("&Process");
   add(process, "Run this frame", QKeySequence("Ctrl+Return"), [this] { run(); });
   add(process, "Run in–out range", QKeySequence("Ctrl+Alt+Return"), [this] { run({}, RunScope::Range); });
+  add(process, "Scout in–out range…", QKeySequence("Ctrl+Alt+S"), [this] { scout(); });
   add(process, "Run whole take", QKeySequence("Ctrl+Shift+Return"), [this] { run({}, RunScope::Take); });
   add(process, "Cancel", QKeySequence("Ctrl+."), [this] { cancelRun(); });
 

@@ -67,6 +67,7 @@ void MainWindow::connectViews() {
 void MainWindow::connectJob() {
   connect(run_bar_, &RunBar::runWanted, this, [this](const QString& until) { run(until.toStdString()); });
   connect(run_bar_, &RunBar::rangeWanted, this, [this] { run({}, RunScope::Range); });
+  connect(run_bar_, &RunBar::scoutWanted, this, &MainWindow::scout);
   connect(run_bar_, &RunBar::takeWanted, this, [this] { run({}, RunScope::Take); });
   connect(run_bar_, &RunBar::stopWanted, this, &MainWindow::cancelRun);
   connect(&job_, &JobBridge::stageStarted, this,
@@ -110,22 +111,23 @@ void MainWindow::connectPlayer() {
   connect(splat_, &SplatView::pictureShown, &player_, &Player::poll);
 }
 
-void MainWindow::run(const std::string& until, RunScope scope) {
+void MainWindow::run(const std::string& until, RunScope scope, int every) {
   if (!model_.isOpen() || job_.busy() || sample_.busy()) return;
   if (!model_.save()) return;
   message_->hide();
   RunRequest request;
   request.until = until;
+  if (scope == RunScope::Scout) request.every = std::max(every, 1);
   const FrameRange all{0, static_cast<int>(model_.capture()->frames.size()) - 1};
   const FrameRange range = scope == RunScope::Take ? all
-                           : scope == RunScope::Range
+                           : scope != RunScope::Frame
                                ? player_.range()
                                : FrameRange{model_.frame().value, model_.frame().value};
   run_ = {};
   run_.until = until;
   run_.active = true;
   for (int f = range.first; f <= range.last; ++f) {
-    run_.frames.push_back(f);
+    if ((f - range.first) % request.every == 0) run_.frames.push_back(f);
     // A whole take goes on with the takes that are there; named frames would become one of their own.
     if (scope != RunScope::Take) request.frames.push_back(FrameIndex{f});
   }
@@ -133,7 +135,18 @@ void MainWindow::run(const std::string& until, RunScope scope) {
   job_.start(model_.project(), request, services_.job_device);
   run_bar_->showStarted(range.size() == 1 ? "Starting frame " +
                                                 QString::fromStdString(model_.capture()->frames[range.first])
-                                          : QString("Starting %1 frames").arg(range.size()));
+                                          : QString("Starting %1 frames").arg(run_.frames.size()));
+}
+
+void MainWindow::scout() {
+  if (!model_.isOpen() || job_.busy() || sample_.busy()) return;
+  const ScoutPlan plan{player_.range().size(), model_.survey() ? secondsAFrame(*model_.survey()) : 0,
+                       QString::fromStdString(model_.project().document().preset)};
+  if (plan.frames < 3) return say("Nothing to scout", "A scout run needs an in–out range of three frames.");
+  const std::optional<int> every = askScout(this, plan, scout_every_);
+  if (!every) return;
+  scout_every_ = *every;
+  run({}, RunScope::Scout, scout_every_);
 }
 
 void MainWindow::showRunning(const std::string& stage, std::optional<FrameIndex> frame) {
@@ -219,7 +232,8 @@ void MainWindow::showValuesIn(StudioView view) {
             {held->values.cloud, held->values.materials},
             QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));
       }
-      return splat_->setScene({values.cloud, values.materials}, "frame " + model_.frameName());
+      return splat_->setScene({values.cloud, values.materials},
+                              "frame " + model_.frameName() + (values.interpolated ? ", interpolated" : ""));
     }
     case StudioView::Image:
       return images_->refresh();
@@ -278,7 +292,8 @@ void MainWindow::showTitle() {
 
 void MainWindow::showStatus() {
   QStringList parts;
-  if (model_.isOpen()) parts << "frame " + model_.frameName();
+  if (model_.isOpen())
+    parts << "frame " + model_.frameName() + (model_.values().interpolated ? ", interpolated" : "");
   if (model_.values().cloud) {
     parts << QString("drawn in %1 ms").arg(splat_->fullPictureMilliseconds(), 0, 'f', 0);
   }

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/stages/interpolated_frame.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -47,6 +48,7 @@ StepState stateOf(CellState cell) {
       return StepState::NotNeeded;
     case CellState::Empty:
     case CellState::Stale:
+    case CellState::Interpolated:
       break;
   }
   return StepState::Pending;
@@ -70,6 +72,8 @@ std::vector<StageStatus> statusOf(const TakeSurvey& survey, const std::vector<St
     if (f < lane.cells.size()) {
       status.state = stateOf(lane.cells[f]);
       status.stale = lane.cells[f] == CellState::Stale;
+      if (lane.cells[f] == CellState::Interpolated)
+        status.detail = "interpolated between solved frames of a scout run";
       if (!lane.notes[f].empty()) status.detail = QString::fromStdString(lane.notes[f]);
     }
     all.push_back(std::move(status));
@@ -79,7 +83,8 @@ std::vector<StageStatus> statusOf(const TakeSurvey& survey, const std::vector<St
 
 FrameValues valuesOf(const Project& project, FrameIndex frame) {
   FrameValues values;
-  if (std::optional<FrameResult> result = loadFrameResult(project, frame)) {
+  if (std::optional<FrameResult> result = loadShownFrame(project, frame)) {
+    values.interpolated = result->interpolated;
     values.cloud = std::make_shared<const GaussianCloud>(std::move(result->cloud));
     if (result->materials)
       values.materials = std::make_shared<const Materials>(std::move(*result->materials));

@@ -58,6 +58,7 @@ void RunBar::setStages(const std::vector<StageInfo>& stages) {
   run_->menu()->clear();
   run_->menu()->addAction("This frame", this, [this] { Q_EMIT runWanted({}); });
   run_->menu()->addAction("In–out range", this, &RunBar::rangeWanted);
+  run_->menu()->addAction("Scout the in–out range…", this, &RunBar::scoutWanted);
   run_->menu()->addAction("Whole take", this, &RunBar::takeWanted);
   run_->menu()->addSeparator();
   for (const StageInfo& stage : stages) {

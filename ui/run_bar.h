@@ -35,6 +35,7 @@ class RunBar final : public QWidget {
  Q_SIGNALS:
   void runWanted(const QString& until);  // of the shown frame; empty: everything
   void rangeWanted();                    // everything from the in to the out point
+  void scoutWanted();                    // every Kth frame from the in to the out point
   void takeWanted();                     // everything of the whole take
   void stopWanted();
 

@@ -17,8 +17,14 @@ constexpr double kRuler = 20, kLane = 13, kGap = 3, kMemory = 5, kCurve = 54;
 constexpr double kLeastLabel = 60;  // between numbers of the ruler
 
 const QColor kText("#a0a6af"), kFaint("#383c42"), kAccent("#5b9bf0"), kInside("#26292d");
-const char* const kShadeWords[] = {"to do",  "queued", "running", "done", "stale: made with other settings",
-                                   "failed", "blocked"};
+const char* const kShadeWords[] = {"to do",
+                                   "queued",
+                                   "running",
+                                   "done",
+                                   "stale: made with other settings",
+                                   "failed",
+                                   "blocked",
+                                   "interpolated between solved frames"};
 
 QColor colorOf(LaneShade shade) {
   switch (shade) {
@@ -36,13 +42,15 @@ QColor colorOf(LaneShade shade) {
       return QColor("#d9604f");
     case LaneShade::Blocked:
       return QColor("#3c3527");
+    case LaneShade::Interpolated:
+      return QColor("#39493b");
   }
   return {};
 }
 
 // Where several frames share a pixel the one that asks for attention is seen.
 int rankOf(LaneShade shade) {
-  constexpr int kRanks[] = {2, 3, 6, 0, 4, 7, 1};  // by LaneShade
+  constexpr int kRanks[] = {3, 4, 7, 0, 5, 8, 2, 1};  // by LaneShade
   return kRanks[static_cast<int>(shade)];
 }
 
@@ -81,6 +89,8 @@ LaneShade shadeOf(const TakeSurvey& survey, std::size_t lane, int frame, const R
       return in_run && before_end ? LaneShade::Queued : LaneShade::Stale;
     case CellState::NotNeeded:
       return LaneShade::Empty;
+    case CellState::Interpolated:
+      return in_run && before_end ? LaneShade::Queued : LaneShade::Interpolated;
     case CellState::Empty:
       break;
   }
@@ -194,6 +204,8 @@ void TimelineLanes::paintLane(QPainter& p, int lane) const {
     }
     const QRectF piece(box.left() + f * cell, box.top(), std::max((next - f) * cell - seam, 0.7), kLane);
     p.fillRect(piece, colorOf(shade));
+    if (shade == LaneShade::Interpolated)
+      p.fillRect(piece, QBrush(colorOf(LaneShade::Done), Qt::BDiagPattern));
     if (shade == LaneShade::Stale) {
       p.setPen(QPen(QColor("#d9a84e"), 1, Qt::DashLine));
       p.drawLine(piece.topLeft() + QPointF(0, 0.5), piece.topRight() + QPointF(0, 0.5));

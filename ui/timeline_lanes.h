@@ -24,7 +24,7 @@ struct RunOverlay {
   bool active = false;
 };
 
-enum class LaneShade { Empty, Queued, Running, Done, Stale, Failed, Blocked };
+enum class LaneShade { Empty, Queued, Running, Done, Stale, Failed, Blocked, Interpolated };
 
 // What lane `lane` shows of a frame.
 LaneShade shadeOf(const TakeSurvey& survey, std::size_t lane, int frame, const RunOverlay& run);

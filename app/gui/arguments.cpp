@@ -44,8 +44,12 @@ StudioArguments parseArguments(QCoreApplication& application) {
   add("b", "Picture B, under a wipe.", "ID");
   add("stage", "Stage whose settings are shown.", "NAME");
   add("run", "Start a run.");
-  add("scope", "Frames of that run: frame (the shown one), range (from in to out point) or take.", "NAME",
-      "frame");
+  add("scope",
+      "Frames of that run: frame (the shown one), range (from in to out point), scout (every Kth of the "
+      "range) "
+      "or take.",
+      "NAME", "frame");
+  add("every", "K of a scout run.", "K", QString::number(kScoutEvery));
   add("until", "Last stage of that run.", "STAGE");
   add("wait-run", "Take the screenshot only when the run has ended.");
   add("in", "In point of the timeline, a frame by the capture's name.", "NAME");
@@ -91,8 +95,10 @@ StudioArguments parseArguments(QCoreApplication& application) {
   a.mesh = parser.isSet("mesh");
   a.run = parser.isSet("run");
   const auto scope = runScopeNamed(parser.value("scope").toStdString());
-  if (!scope) refuse("--scope expects frame, range or take, found \"" + parser.value("scope") + "\"");
+  if (!scope) refuse("--scope expects frame, range, scout or take, found \"" + parser.value("scope") + "\"");
   a.scope = *scope;
+  a.every = static_cast<int>(numberOf(parser, "every"));
+  if (a.every < 1) refuse("--every expects a number of frames, 1 or more");
   a.in = parser.value("in");
   a.out = parser.value("out");
   a.curve = parser.value("curve");

@@ -23,6 +23,7 @@ struct StudioArguments {
   bool sky = false, mesh = false, run = false, wait_run = false;
   QString until;
   RunScope scope = RunScope::Frame;
+  int every = kScoutEvery;  // of a scout run
   QString in, out, curve;
   double play_s = 0;  // 0: not
   bool full_size = false;

@@ -84,7 +84,7 @@ void Errand::show() {
   if (!arguments_.environment.isEmpty()) window_.open(arguments_.environment.toStdString());
   if (!arguments_.select.isEmpty()) window_.rail().select(arguments_.select.toStdString());
   if (arguments_.run) {
-    window_.run(arguments_.until.toStdString(), arguments_.scope);
+    window_.run(arguments_.until.toStdString(), arguments_.scope, arguments_.every);
     run_started_ = true;
   }
 }

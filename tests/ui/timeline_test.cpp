@@ -15,7 +15,9 @@
 #include <utility>
 
 #include "core/io/file.h"
+#include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/scene/pose.h"
 #include "tests/support/splat_shapes.h"
 #include "tests/support/temp_dir.h"
 #include "ui/main_window.h"
@@ -58,6 +60,8 @@ TEST(LaneShade, ShowsWhatIsOnDiskWhereNoRunGoesOn) {
   EXPECT_EQ(shadeOf(survey, 0, 0, none), LaneShade::Done);
   EXPECT_EQ(shadeOf(survey, 0, 1, none), LaneShade::Stale);
   EXPECT_EQ(shadeOf(survey, 0, 2, none), LaneShade::Failed);
+  const TakeSurvey scout = surveyOf({Done, Interpolated, Done}, {Empty, Empty, Empty});
+  EXPECT_EQ(shadeOf(scout, 0, 1, none), LaneShade::Interpolated);
   EXPECT_EQ(shadeOf(survey, 0, 3, none), LaneShade::Empty);
   EXPECT_EQ(shadeOf(survey, 1, 0, none), LaneShade::Running);
   EXPECT_EQ(shadeOf(survey, 1, 1, none), LaneShade::Blocked);
@@ -96,17 +100,20 @@ class BallStage final : public StageOf<BallOptions> {
       c.progress.check();
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    GaussianCloud cloud;
-    testing::addSphere(cloud, vec3(0.1f * static_cast<float>(c.frame.value), 1, 0), 0.3f, options_.size);
+    const auto at = static_cast<float>(c.frame.value);
+    const GaussianCloud cloud = ballAt(at), joints = jointsAt(at);
     c.scores["gaussians"] = static_cast<double>(cloud.size()) + c.frame.value;
-    if (info_.id == "track") {  // a joint at either side of the ball
-      GaussianCloud joints;
-      for (const float side : {-0.3f, 0.3f})
-        testing::addSplat(joints, vec3(0.1f * static_cast<float>(c.frame.value) + side, 1, 0), vec3(0, 0, 1),
-                          0.1f, 0.01f);
+    if (info_.id == "track") {
+      writePosePly(c.folder / kRestPoseFile, poseOf(jointsAt(0)));
       return writeSplatPly(c.folder / kJointsFile, joints, nullptr);
     }
-    if (info_.id == "surface") return writeSplatPly(c.folder / kCloudFile, cloud, nullptr);
+    if (info_.id == "surface") {
+      if (c.later()) {
+        writePosePly(c.folder / kRestPoseFile, poseOf(ballAt(0)));
+        writePosePly(c.folder / kJointPoseFile, poseOf(joints));
+      }
+      return writeSplatPly(c.folder / kCloudFile, cloud, nullptr);
+    }
     Materials m;
     m.roughness.assign(cloud.size(), 0.5f);
     m.base_color = ShBlock(cloud.size(), 3);
@@ -115,6 +122,19 @@ class BallStage final : public StageOf<BallOptions> {
   }
 
  private:
+  GaussianCloud ballAt(float frame) const {
+    GaussianCloud cloud;
+    testing::addSphere(cloud, vec3(0.1f * frame, 1, 0), 0.3f, options_.size);
+    return cloud;
+  }
+  // One at either side of the ball.
+  static GaussianCloud jointsAt(float frame) {
+    GaussianCloud joints;
+    for (const float side : {-0.3f, 0.3f})
+      testing::addSplat(joints, vec3(0.1f * frame + side, 1, 0), vec3(0, 0, 1), 0.1f, 0.01f);
+    return joints;
+  }
+
   StageInfo info_;
 };
 
@@ -162,7 +182,10 @@ class Timeline : public ::testing::Test {
                     "",
                     {{.id = "seed", .title = "Seed", .reads = pictures},
                      {.id = "fit", .title = "Fit", .inputs = {"surface.seed"}},
-                     {.id = "refine", .title = "Refine", .inputs = {"surface.fit"}},
+                     {.id = "refine",
+                      .title = "Refine",
+                      .inputs = {"surface.fit"},
+                      .later = {.previous = {"surface.refine"}}},
                      {.id = "mesh", .title = "Mesh", .inputs = {"surface.refine"}}}});
     });
     setup->stages.add([] {
@@ -259,6 +282,46 @@ TEST_F(Timeline, RunsTheRangeAloneAndHoldsTheNearestSolvedFrame) {
   ASSERT_TRUE(waitFor([&] { return window.settled(); }));
   EXPECT_TRUE(window.model().values().materials);
   EXPECT_FALSE(window.model().held());
+}
+
+// Frames 0 2 4 are solved, 1 and 3 lie between, 5 is behind the last.
+TEST_F(Timeline, ScoutsTheRangeAndShowsWhatLiesBetween) {
+  window.player().goTo(1);
+  window.run({}, RunScope::Scout, 2);
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
+  using enum CellState;
+  EXPECT_EQ(window.model().survey()->lanes[0].cells,
+            (std::vector{Done, Interpolated, Done, Interpolated, Done, Empty}));
+  ASSERT_TRUE(window.model().values().cloud);
+  EXPECT_TRUE(window.model().values().interpolated);
+  EXPECT_TRUE(window.model().values().materials);
+  const vec3 first = window.model().values().cloud->position_m[0];
+  window.player().goTo(2);
+  ASSERT_TRUE(waitFor([&] { return window.settled(); }));
+  EXPECT_FALSE(window.model().values().interpolated);
+  EXPECT_NEAR(window.model().values().cloud->position_m[0].x - first.x, 0.1, 1e-4);
+  window.player().goTo(5);
+  ASSERT_TRUE(waitFor([&] { return window.settled(); }));
+  ASSERT_TRUE(window.model().held());
+  EXPECT_EQ(window.model().held()->from.value, 4);
+  // A setting of surface: what lies between goes with what it lies between.
+  window.player().goTo(1);
+  window.model().set("surface.size", FieldValue(41));
+  ASSERT_TRUE(waitFor([&] { return window.settled() && !window.model().values().cloud; }));
+}
+
+TEST(Scout, SaysWhatItWillTake) {
+  TakeSurvey survey;
+  survey.curves = {{"surface.fit.seconds", {60, NAN, 20}},
+                   {"surface.fit.loss", {5, 5, 5}},
+                   {"materials.fit.seconds", {10, NAN, 30}}};
+  EXPECT_EQ(secondsAFrame(survey), 60);
+  EXPECT_EQ(secondsAFrame({}), 0);
+  const QString words = scoutText({25, 60, "draft"}, 10);
+  EXPECT_TRUE(words.contains("3 of 25 frames")) << words.toStdString();
+  EXPECT_TRUE(words.contains("3 min 00 s"));
+  EXPECT_TRUE(words.contains("18 between"));
+  EXPECT_TRUE(words.contains("4 after"));
 }
 
 TEST_F(SolvedTimeline, OffersTheScoresOfTheTakeAsCurves) {
