@@ -10,6 +10,7 @@
 #include "core/method/fit_surface.h"
 #include "core/method/joint_warp.h"
 #include "core/method/training_views.h"
+#include "core/method/view_loss.h"
 #include "core/optim/gaussian_model.h"
 #include "core/optim/pose_model.h"
 #include "core/optim/rigid_energy.h"
@@ -18,9 +19,11 @@
 namespace beam {
 namespace {
 
-constexpr int kNeighbors = 8;        // of the joint graph (methods 3.2)
-constexpr int kFewestNodes = 64;     // of a coarse level
-constexpr float kLevelDecay = 0.1f;  // learning rates of a level end at this share
+constexpr int kNeighbors = 8;          // of the joint graph (methods 3.2)
+constexpr int kFewestNodes = 64;       // of a coarse level
+constexpr float kRecolorRate = 0.01f;  // of SH band 0
+constexpr int kSmoothRounds = 30;      // a standard deviation of about four spacings
+constexpr float kLevelDecay = 0.1f;    // learning rates of a level end at this share
 
 // Indices in the order of farthest-point sampling from the first: every beginning of it covers the points
 // evenly.
@@ -134,6 +137,7 @@ class JointTracker {
       result.rigid = rigid;
     }
     result.joints = posed();
+    if (options_.recolor_iterations > 0) recolor(result.joints);
     return result;
   }
 
@@ -219,6 +223,43 @@ class JointTracker {
     }
     PoseGradient ignored(before.size());
     return rigidEnergy(graph, lists, before, model.pose(), 0, ignored);
+  }
+
+  // A body that turns is shaded anew, and colours of another shading pull the joints off the skin. Only what
+  // changes alike over neighbours is taken on: shading is smooth, and the texture is what holds the joints.
+  void recolor(GaussianCloud& joints) {
+    ViewLoss loss(views_, {.ssim_weight = 0, .mask_weight = 0, .seed = options_.seed}, false, device_);
+    GaussianModel model(joints);
+    model.updateFilter(loss.cameras(), 1);
+    GaussianBuffers gradients;
+    for (int step = 0; step < options_.recolor_iterations; ++step) {
+      model.activate();
+      loss.gradient(model.physical(), step, 3, gradients);
+      const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step, options_.recolor_iterations));
+      model.step(gradients, {0, 0, 0, 0, kRecolorRate * decay, 0}, 3, {}, step + 1, loss.ops());
+    }
+    const GaussianCloud changed = model.cloud();
+    std::vector<vec3> shading(joints.size());
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      for (int c = 0; c < 3; ++c) shading[i][c] = changed.color.of(i)[c] - joints.color.of(i)[c];
+    }
+    const Anchors graph = graphOf(history_.rest.position_m);
+    for (int round = 0; round < kSmoothRounds; ++round) shading = averaged(graph, shading);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      for (int c = 0; c < 3; ++c) joints.color.of(i)[c] += shading[i][c];
+    }
+  }
+
+  // Half of one's own, half of the neighbours'.
+  static std::vector<vec3> averaged(const Anchors& graph, const std::vector<vec3>& values) {
+    std::vector<vec3> out(values.size());
+    const auto n = static_cast<std::size_t>(graph.per_point);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      out[i] = 0.5f * values[i];
+      for (std::size_t s = i * n; s < (i + 1) * n; ++s)
+        out[i] += 0.5f * graph.weight[s] * values[graph.target[s]];
+    }
+    return out;
   }
 
   std::span<const FrameView> views_;
@@ -343,6 +384,15 @@ void describe(Fields& f, TrackJointsOptions& o) {
            .max = 100,
            .advanced = true},
           o.size_weight);
+  f.field(
+      {.name = "recolor_iterations",
+       .label = "Follow the shading",
+       .help = "Steps that bring the joints' colours to the shading of each frame, smoothly over the body; "
+               "0 keeps those of the first frame, the paper's way.",
+       .min = 0,
+       .max = 1e5,
+       .advanced = true},
+      o.recolor_iterations);
   f.field({.name = "seed",
            .label = "Seed",
            .help = "Of all random numbers.",

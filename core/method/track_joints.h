@@ -27,6 +27,7 @@ struct TrackJointsOptions {
   double rotation_rate = 2e-3;   // radians
   double isotropy_weight = 0.002;  // methods 3.2
   double size_weight = 1;          // methods 3.2
+  int recolor_iterations = 0;      // ours: 0 is the paper's way, colours of the first frame for ever
   int seed = 1;
 };
 void describe(Fields& fields, TrackJointsOptions& options);

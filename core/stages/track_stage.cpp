@@ -21,7 +21,7 @@ constexpr double kSeedShare = 0.4;                 // seeds as a share of the jo
 
 struct TrackOptions {
   TrackJointsOptions joints;
-  double restart_ratio = 2;  // ours (methods 3.8: off in the paper's code)
+  double restart_ratio = 4;  // ours (methods 3.8: off in the paper's code)
   int segment_frames = 50;   // reliability 3.5
 };
 
