@@ -3,6 +3,8 @@
 #include <QLabel>
 #include <QStackedWidget>
 
+#include <algorithm>
+
 #include "ui/image_page.h"
 #include "ui/log_panel.h"
 #include "ui/main_window.h"

@@ -3,6 +3,8 @@
 
 #include <QCommandLineParser>
 
+#include <string>
+
 #include "core/base/error.h"
 
 namespace beam {
@@ -49,7 +51,7 @@ StudioArguments parseArguments(QCoreApplication& application) {
       "range) "
       "or take.",
       "NAME", "frame");
-  add("every", "K of a scout run.", "K", QString::number(kScoutEvery));
+  add("every", "K of a scout run.", "K", std::to_string(kScoutEvery).c_str());
   add("until", "Last stage of that run.", "STAGE");
   add("wait-run", "Take the screenshot only when the run has ended.");
   add("in", "In point of the timeline, a frame by the capture's name.", "NAME");

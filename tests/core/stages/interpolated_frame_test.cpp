@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
@@ -26,12 +28,16 @@ std::vector<StageInfo> stages() {
            "",
            {{.id = "joints",
              .title = "Joints",
+             .reads = {Reads::Pictures},
              .frames = Frames::InTakes,
              .later = {.previous = {"track.joints"}}}}},
           {"surface",
            "Surface",
            "",
-           {{.id = "fit", .title = "Fit", .later = {.inputs = {"track.joints"}, .previous = {"surface.fit"}}},
+           {{.id = "fit",
+             .title = "Fit",
+             .reads = {Reads::Pictures},
+             .later = {.inputs = {"track.joints"}, .previous = {"surface.fit"}}},
             {.id = "refine",
              .title = "Refine",
              .inputs = {"surface.fit"},
@@ -60,22 +66,22 @@ GaussianCloud stickAt(float frame) {
 }
 
 // Frames 0 3 6 solved of eight.
-class Scout : public ::testing::Test {
- protected:
-  Scout() : house_(stages()) {
+class Scout {
+ public:
+  explicit Scout(std::set<int> restarts = {}) : restarts_(std::move(restarts)), house_(stages()) {
     house_.frame_names = {"000", "001", "002", "003", "004", "005", "006", "007"};
     house_.hooks.at_step = [this](const std::string& step, StepContext& c) { write(step, c); };
-  }
-
-  Project run(int every) {
-    Project project = house_.newProject();
+    project_.emplace(house_.newProject());
     RunRequest request;
-    request.every = every;
-    EXPECT_TRUE(house_.finish(project, request).failed.empty());
-    project.readTakesAgain();
-    return project;
+    request.every = 3;
+    EXPECT_TRUE(house_.finish(*project_, request).failed.empty());
+    project_->readTakesAgain();
   }
 
+  Project project() const { return *project_; }
+  std::filesystem::path folder() const { return house_.root(); }
+
+ private:
   void write(const std::string& step, StepContext& c) const {
     const auto f = static_cast<float>(c.frame.value);
     if (step == "track.joints") {
@@ -91,12 +97,19 @@ class Scout : public ::testing::Test {
     writePosePly(c.folder / kJointPoseFile, poseOf(stickAt(f)));
   }
 
-  FakeHouse house_;
   std::set<int> restarts_;
+  FakeHouse house_;
+  std::optional<Project> project_;
 };
 
-TEST_F(Scout, ShowsWhatLiesBetweenItsFrames) {
-  const Project project = run(3);
+// Solved once for all tests.
+const Scout& solved() {
+  static const Scout scout;
+  return scout;
+}
+
+TEST(InterpolatedFrame, ShowsWhatLiesBetweenItsFrames) {
+  const Project project = solved().project();
   for (const int f : {1, 2, 4, 5}) {
     EXPECT_FALSE(loadFrameResult(project, {f})) << "nothing is kept of it";
     const auto shown = loadShownFrame(project, {f});
@@ -112,41 +125,37 @@ TEST_F(Scout, ShowsWhatLiesBetweenItsFrames) {
   }
 }
 
-TEST_F(Scout, LeavesItsOwnFramesAloneAndHasNothingBehindTheLast) {
-  const Project project = run(3);
+TEST(InterpolatedFrame, LeavesItsOwnFramesAloneAndHasNothingBehindTheLast) {
+  const Project project = solved().project();
   EXPECT_FALSE(loadShownFrame(project, {3})->interpolated);
   EXPECT_FALSE(solvedAround(project, {3}));
   EXPECT_FALSE(loadShownFrame(project, {7}));
   EXPECT_FALSE(solvedAround(project, {7}));
 }
 
-TEST_F(Scout, HasNothingWhereTheJointsStartedAnew) {
-  restarts_ = {6};
-  const Project project = run(3);
+TEST(InterpolatedFrame, HasNothingWhereTheJointsStartedAnew) {
+  const Scout scout({6});
+  const Project project = scout.project();
   EXPECT_TRUE(loadShownFrame(project, {2}));
   EXPECT_FALSE(loadShownFrame(project, {4}));
   EXPECT_FALSE(solvedAround(project, {4}));
 }
 
-TEST_F(Scout, IsSolvedFrameByFrameInATakeWithoutStride) {
-  const Project project = run(1);
-  EXPECT_FALSE(loadShownFrame(project, {2})->interpolated);
-}
-
-TEST_F(Scout, IsRenderedOnlyWhereThatIsAskedFor) {
-  const Project project = run(3);
+TEST(InterpolatedFrame, IsRenderedOnlyWhereThatIsAskedFor) {
+  const Project project = solved().project();
   FakeDevice device;
   RenderRequest request;
+  request.channels = {"rgb"};
   request.frames = {FrameIndex{1}};
-  request.out = house_.root() / "out";
+  request.out = solved().folder() / "out";
   Progress progress;
   EXPECT_THROW(renderChannels(project, request, device, progress), Error);
   request.interpolate = true;
   EXPECT_NO_THROW(renderChannels(project, request, device, progress));
 }
 
-TEST_F(Scout, IsDrawnAsSuchAndReadAgainWithItsNeighbours) {
-  Project project = run(3);
+TEST(InterpolatedFrame, IsDrawnAsSuchAndReadAgainWithItsNeighbours) {
+  Project project = solved().project();
   TakeSurveyor surveyor;
   const TakeSurvey survey = surveyor.survey(project);
   const CellState done = CellState::Done, between = CellState::Interpolated;
