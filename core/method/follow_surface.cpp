@@ -16,11 +16,13 @@ namespace {
 
 constexpr int kNeighbors = 8;   // of the binding and of the skin graph (methods 3.2, 3.4)
 constexpr double kReach = 1.8;  // length of their weights in mean spacings: 0.02 m of methods 3.2
+constexpr double kApart = 0.5;  // neighbours stand this many spacings apart
 constexpr float kDecay = 0.1f;  // learning rates end at this share
 
 Anchors graphOf(const Pose& skin) {
-  return neighborGraph(skin.position_m, kNeighbors,
-                       static_cast<float>(kReach * meanSpacing(skin.position_m)));
+  const double spacing = spacingOf(skin.position_m);
+  return neighborGraph(skin.position_m, kNeighbors, static_cast<float>(kReach * spacing),
+                       static_cast<float>(kApart * spacing));
 }
 
 class SkinFollower {
@@ -96,6 +98,8 @@ class SkinFollower {
     PoseGradient of_skin(skin.size()), of_joints(joints_.pose().size());
     addPoseGradient(gradients_, of_skin);
     rigidEnergy(graph_, lists_, before_, skin, static_cast<float>(options_.smooth_weight), of_skin);
+    if (options_.rest_weight > 0)
+      rigidEnergy(graph_, lists_, reference_rest_, skin, static_cast<float>(options_.rest_weight), of_skin);
     warp_.backward(joints_.pose(), of_skin, of_joints);
     const auto decay = static_cast<float>(logLinear(1, kDecay, step, options_.iterations));
     if (geometry_ && options_.residual) moveRest(of_skin, decay, adam_step);
@@ -150,8 +154,9 @@ int refineStart(const FollowSurfaceOptions& o) {
 }  // namespace
 
 Anchors boundTo(const Pose& skin, const Pose& joints) {
-  return anchorTo(skin.position_m, joints.position_m, kNeighbors,
-                  static_cast<float>(kReach * meanSpacing(joints.position_m)));
+  const double spacing = spacingOf(joints.position_m);
+  return anchorTo(skin.position_m, joints.position_m, kNeighbors, static_cast<float>(kReach * spacing),
+                  static_cast<float>(kApart * spacing));
 }
 
 Pose carriedJoints(const Pose& tracked_before, const Pose& corrected_before, const Pose& tracked) {
@@ -201,6 +206,12 @@ void describe(Fields& f, FollowSurfaceOptions& o) {
            .min = 0,
            .max = 100},
           o.smooth_weight);
+  f.field({.name = "rest_weight",
+           .label = "Memory of the shape",
+           .help = "Weight of the same energy against the skin of the first frame; 0 is the paper's way.",
+           .min = 0,
+           .max = 100},
+          o.rest_weight);
   f.field({.name = "temporal_weight",
            .label = "Steadiness",
            .help = "lambda of E_temp: appearance stays that of the frame before (BEAM 3.1: 5e-5).",

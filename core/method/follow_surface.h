@@ -16,6 +16,7 @@ struct FollowSurfaceOptions {
   int iterations = 12000;                // optimiser steps of a later frame: 7,000 + 5,000 (BEAM 3.1)
   double refine_fraction = 5.0 / 12;     // share of them with E_normal
   double smooth_weight = 0.001;          // lambda_smooth on the skin graph, a plain sum (methods 3.7)
+  double rest_weight = 0;                // ours: E_smooth against the skin at rest
   double temporal_weight = 5e-5;         // lambda_temp of eq. 10, a plain sum over raw values (methods 3.7)
   bool residual = true;                  // Gaussians may leave their joints while E_normal acts (methods 3.7)
   double residual_weight = 1e-2;         // ties a Gaussian's residual to the frame before, a plain sum

@@ -20,10 +20,12 @@ namespace beam {
 namespace {
 
 constexpr int kNeighbors = 8;          // of the joint graph (methods 3.2)
+constexpr double kApart = 0.5;         // neighbours stand this many spacings apart
 constexpr int kFewestNodes = 64;       // of a coarse level
 constexpr float kRecolorRate = 0.01f;  // of SH band 0
-constexpr int kSmoothRounds = 30;      // a standard deviation of about four spacings
-constexpr float kLevelDecay = 0.1f;    // learning rates of a level end at this share
+constexpr int kVelocityRounds = 8;
+constexpr int kSmoothRounds = 30;    // a standard deviation of about four spacings
+constexpr float kLevelDecay = 0.1f;  // learning rates of a level end at this share
 
 // Indices in the order of farthest-point sampling from the first: every beginning of it covers the points
 // evenly.
@@ -160,41 +162,47 @@ class JointTracker {
 
   void predict(LevelView& view) {
     if (history_.before_m.empty()) return;
+    std::vector<vec3> velocity(previous_.size());
+    for (std::size_t i = 0; i < velocity.size(); ++i)
+      velocity[i] = previous_.position_m[i] - history_.before_m[i];
+    // A hidden joint's velocity is noise that would grow from frame to frame.
+    const Anchors graph = graphOf(history_.rest.position_m);
+    for (int round = 0; round < kVelocityRounds; ++round) velocity = averaged(graph, velocity);
     Pose predicted = previous_;
-    for (std::size_t i = 0; i < predicted.size(); ++i)
-      predicted.position_m[i] += previous_.position_m[i] - history_.before_m[i];
+    for (std::size_t i = 0; i < predicted.size(); ++i) predicted.position_m[i] += velocity[i];
     if (view.lossOfAll(predicted) < view.lossOfAll(pose_)) pose_ = std::move(predicted);
   }
 
   Anchors graphOf(std::span<const vec3> at_rest) const {
-    return neighborGraph(at_rest, kNeighbors,
-                         static_cast<float>(options_.rigid_spacings * meanSpacing(at_rest)));
+    const double spacing = spacingOf(at_rest);
+    return neighborGraph(at_rest, kNeighbors, static_cast<float>(options_.rigid_spacings * spacing),
+                         static_cast<float>(kApart * spacing));
   }
 
   double moveNodes(int level, LevelView& view, Progress& progress) {
     const std::span<const std::uint32_t> nodes(order_.data(), nodesOf(level));
     const Pose rest = chosen(history_.rest, nodes), start = chosen(pose_, nodes);
-    const float reach = static_cast<float>(options_.rigid_spacings * meanSpacing(rest.position_m));
+    const float reach = static_cast<float>(options_.rigid_spacings * spacingOf(rest.position_m));
     const JointWarp warp(pose_, start,
                          anchorTo(history_.rest.position_m, rest.position_m, kNeighbors, reach));
     PoseModel model(start);
     const Pose before = chosen(previous_, nodes);
-    const double rigid = descend(level, graphOf(rest.position_m), before, model, view, progress, &warp);
+    const double rigid = descend(level, graphOf(rest.position_m), rest, before, model, view, progress, &warp);
     pose_ = warp.skin(model.pose());
     return rigid;
   }
 
   double moveJoints(LevelView& view, Progress& progress) {
     PoseModel model(pose_);
-    const double rigid =
-        descend(0, graphOf(history_.rest.position_m), previous_, model, view, progress, nullptr);
+    const double rigid = descend(0, graphOf(history_.rest.position_m), history_.rest, previous_, model, view,
+                                 progress, nullptr);
     pose_ = model.pose();
     return rigid;
   }
 
   // Returns E_rigid at the end. Without `warp` the model's pose is that of the joints.
-  double descend(int level, const Anchors& graph, const Pose& before, PoseModel& model, LevelView& view,
-                 Progress& progress, const JointWarp* warp) {
+  double descend(int level, const Anchors& graph, const Pose& rest, const Pose& before, PoseModel& model,
+                 LevelView& view, Progress& progress, const JointWarp* warp) {
     const AnchorLists lists = listsOf(graph, before.size());
     const int steps = stepsOf(level);
     const std::size_t batch = std::min<std::size_t>(view.size(), std::size_t{1} << (2 * std::min(level, 4)));
@@ -216,6 +224,8 @@ class JointTracker {
       }
       const auto n = static_cast<float>(batch);  // the photometric gradient is a sum over the batch
       rigidEnergy(graph, lists, before, pose, static_cast<float>(options_.rigid_weight) * n, of_model);
+      if (options_.rest_weight > 0)
+        rigidEnergy(graph, lists, rest, pose, static_cast<float>(options_.rest_weight) * n, of_model);
       const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step, steps));
       model.step(of_model, static_cast<float>(options_.position_rate * view.pixelSize()) * decay,
                  static_cast<float>(options_.rotation_rate) * static_cast<float>(1 << level) * decay,
@@ -272,18 +282,18 @@ class JointTracker {
 
 }  // namespace
 
-double meanSpacing(std::span<const vec3> points) {
+double spacingOf(std::span<const vec3> points) {
+  constexpr int kEighth = 8;
+  const double on_lattice = std::sqrt(2.0);
   const KdTree tree(points);
-  const double sum = parallelReduce(
-      points.size(), 1024, 0.0,
-      [&](std::size_t begin, std::size_t end) {
-        double s = 0;
-        for (std::size_t i = begin; i < end; ++i)
-          s += std::sqrt(static_cast<double>(tree.nearest(points[i], 2).back().squared_distance));
-        return s;
-      },
-      [](double a, double b) { return a + b; });
-  return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
+  std::vector<float> distance(points.size());
+  parallelFor(points.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      distance[i] = std::sqrt(tree.nearest(points[i], kEighth + 1).back().squared_distance);
+  });
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  return distance.empty() ? 0 : *middle / on_lattice;
 }
 
 GaussianCloud fitFirstJoints(std::span<const FrameView> views, const PointCloud& seeds,
@@ -342,6 +352,13 @@ void describe(Fields& f, TrackJointsOptions& o) {
            .min = 0,
            .max = 100},
           o.rigid_weight);
+  f.field({.name = "rest_weight",
+           .label = "Memory of the shape",
+           .help = "Weight of the same energy against the first frame: joints that were hidden come back to "
+                   "their neighbours; 0 is the paper's way.",
+           .min = 0,
+           .max = 100},
+          o.rest_weight);
   f.field({.name = "rigid_spacings",
            .label = "Reach of the graph",
            .help = "Length of the graph's weights in spacings of the joints (0.02 m for 15,000).",

@@ -20,6 +20,7 @@ struct TrackJointsOptions {
   int iterations = 5000;         // of a later frame, over all levels (methods 3.7: 5k to 15k)
   int levels = 0;                // coarser levels before the full pictures; each halves the pictures' sides
   double rigid_weight = 0.05;    // lambda of E_rigid, a plain sum
+  double rest_weight = 0;        // ours: likewise against the first frame, so that no shape is forgotten
   double rigid_spacings = 1.8;   // length l of the graph's weights in mean spacings of the joints: 0.02 m for
                                  // 15,000 joints on a grown person
   double mask_weight = 0.1;      // methods 3.8
@@ -62,7 +63,8 @@ TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& 
 double jointResidual(std::span<const FrameView> views, const GaussianCloud& joints, double mask_weight,
                      ComputeDevice& device);
 
-// Mean distance of a point to its nearest neighbour, metres.
-double meanSpacing(std::span<const vec3> points);
+// Distance of neighbours on the surface that the points lie on, metres: the median distance to the 8th
+// nearest over its value on a square lattice. Copies at one place, which MCMC makes, do not count.
+double spacingOf(std::span<const vec3> points);
 
 }  // namespace beam

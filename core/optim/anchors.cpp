@@ -13,17 +13,42 @@ namespace {
 
 constexpr std::size_t kGrain = 512;
 
+constexpr std::size_t kCandidates = 8;  // as many times the count are looked at
+
+// The first `count` of `near` that stand `apart_m` from each other and from `own`, then the nearest others;
+// by distance.
+std::vector<Neighbor> spreadOut(const std::vector<Neighbor>& near, std::span<const vec3> targets,
+                                std::size_t count, const vec3* own, float apart_m) {
+  std::vector<Neighbor> chosen, rest;
+  for (const Neighbor& n : near) {
+    const vec3& at = targets[n.index];
+    const auto close = [&](const vec3& other) { return glm::length(other - at) < apart_m; };
+    const bool crowded =
+        (own && close(*own)) ||
+        std::any_of(chosen.begin(), chosen.end(), [&](const auto& c) { return close(targets[c.index]); });
+    (crowded || chosen.size() == count ? rest : chosen).push_back(n);
+  }
+  for (std::size_t k = 0; chosen.size() < count; ++k) chosen.push_back(rest[k]);
+  std::stable_sort(chosen.begin(), chosen.end(), [](const Neighbor& a, const Neighbor& b) {
+    return a.squared_distance < b.squared_distance;
+  });
+  return chosen;
+}
+
 // `skip`: leave the point itself out.
 Anchors anchored(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m,
-                 bool skip) {
+                 float apart_m, bool skip) {
   const KdTree tree(targets);
-  const std::size_t per_point = std::min<std::size_t>(count, targets.size() - (skip ? 1 : 0));
+  const std::size_t own = skip ? 1 : 0;
+  const std::size_t per_point = std::min<std::size_t>(count, targets.size() - own);
+  const std::size_t seen = std::min(targets.size(), per_point * (apart_m > 0 ? kCandidates : 1) + own);
   Anchors a{static_cast<int>(per_point), std::vector<std::uint32_t>(points.size() * per_point),
             std::vector<float>(points.size() * per_point)};
   parallelFor(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      std::vector<Neighbor> near = tree.nearest(points[i], static_cast<int>(per_point) + (skip ? 1 : 0));
+      std::vector<Neighbor> near = tree.nearest(points[i], static_cast<int>(seen));
       if (skip) std::erase_if(near, [&](const Neighbor& n) { return n.index == i; });
+      if (apart_m > 0) near = spreadOut(near, targets, per_point, skip ? &points[i] : nullptr, apart_m);
       double sum = 0;
       std::vector<double> weight(per_point);
       for (std::size_t k = 0; k < per_point; ++k) {
@@ -41,14 +66,15 @@ Anchors anchored(std::span<const vec3> points, std::span<const vec3> targets, in
 
 }  // namespace
 
-Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m) {
+Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m,
+                 float apart_m) {
   if (targets.empty()) throw Error(Error::Kind::Data, "there is no joint to hang the Gaussians on");
-  return anchored(points, targets, count, length_m, false);
+  return anchored(points, targets, count, length_m, apart_m, false);
 }
 
-Anchors neighborGraph(std::span<const vec3> points, int count, float length_m) {
+Anchors neighborGraph(std::span<const vec3> points, int count, float length_m, float apart_m) {
   if (points.size() < 2) throw Error(Error::Kind::Data, "a graph of neighbours needs two Gaussians or more");
-  return anchored(points, points, count, length_m, true);
+  return anchored(points, points, count, length_m, apart_m, true);
 }
 
 AnchorLists listsOf(const Anchors& anchors, std::size_t targets) {

@@ -35,11 +35,15 @@ struct AnchorLists {
   std::vector<std::uint32_t> first, slot;
 };
 
-// The `count` nearest targets of every point with weights exp(-(d^2 - d_min^2) / length^2), normalised
-// (methods 3.2: without d_min a far point divides 0 by 0). Fewer targets than `count`: as many as there are.
-Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m);
-// Likewise of the points among themselves, each without itself. Throws Error{Data} for fewer than 2 points.
-Anchors neighborGraph(std::span<const vec3> points, int count, float length_m);
+// `count` near targets of every point with weights exp(-(d^2 - d_min^2) / length^2), normalised (methods 3.2:
+// without d_min a far point divides 0 by 0): the nearest of those that stand `apart_m` from one another, then
+// the nearest of the rest. MCMC makes copies at one place, and eight of them would tie a point to nothing but
+// themselves. Fewer targets than `count`: as many as there are.
+Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m,
+                 float apart_m = 0);
+// Likewise of the points among themselves, each without itself, and `apart_m` from itself. Throws Error{Data}
+// for fewer than 2 points.
+Anchors neighborGraph(std::span<const vec3> points, int count, float length_m, float apart_m = 0);
 
 AnchorLists listsOf(const Anchors& anchors, std::size_t targets);
 

@@ -60,7 +60,7 @@ TEST(TrackJoints, FollowsAMotionOfSeveralSpacings) {
   const vec3 motion(0.16f, 0.05f, -0.1f);
   const TrackJointsOptions o = quick();
   const GaussianCloud first = firstJoints(photographsAt(s, s.center), o);
-  ASSERT_GT(glm::length(motion), 3 * meanSpacing(first.position_m));
+  ASSERT_GT(glm::length(motion), 3 * spacingOf(first.position_m));
   Progress progress;
   const TrackedJoints t = trackJoints(photographsAt(s, s.center + motion), {poseOf(first), first, {}}, o,
                                       *makeCpuDevice(), progress);
@@ -69,6 +69,16 @@ TEST(TrackJoints, FollowsAMotionOfSeveralSpacings) {
   EXPECT_EQ(t.joints.opacity, first.opacity);
   EXPECT_LT(medianError(first, t.joints, motion), 0.011f);  // half a pixel
   EXPECT_LT(t.residual, 0.05);
+}
+
+TEST(SpacingOf, IsThatOfTheLatticeWhateverCopiesThereAre) {
+  std::vector<vec3> points;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 30; ++x) points.push_back({0.02f * x, 0.02f * y, 0});
+  }
+  EXPECT_NEAR(spacingOf(points), 0.02, 1e-6);
+  for (std::size_t i = 0; i < 300; ++i) points.push_back(points[i] + vec3(1e-6f, 0, 0));
+  EXPECT_NEAR(spacingOf(points), 0.02, 0.006);
 }
 
 TEST(TrackJoints, StandsStillWithTheSubject) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -60,6 +61,26 @@ TEST(Anchors, TakeWhatThereIsAndRefuseNothing) {
   EXPECT_EQ(neighborGraph(two, 8, 0.02f).target[0], 1u);
   EXPECT_THROW(neighborGraph(std::vector<vec3>{vec3(0)}, 8, 0.02f), Error);
   EXPECT_THROW(anchorTo(two, {}, 8, 0.02f), Error);
+}
+
+TEST(Anchors, ReachPastCopiesAtOnePlace) {
+  // A row of places, five points at each: without a distance apart every point would hang on its copies.
+  std::vector<vec3> points;
+  for (int place = 0; place < 10; ++place) {
+    for (int copy = 0; copy < 5; ++copy) points.push_back({0.02f * place, 1e-5f * copy, 0});
+  }
+  const auto placesOf = [&](const Anchors& graph, std::size_t i) {
+    std::set<int> places;
+    for (int k = 0; k < 2; ++k) places.insert(static_cast<int>(graph.target[i * 2 + k]) / 5);
+    return places;
+  };
+  const Anchors crowded = neighborGraph(points, 2, 0.02f), spread = neighborGraph(points, 2, 0.02f, 0.01f);
+  for (std::size_t i = 5; i < points.size() - 5; ++i) {
+    const int own = static_cast<int>(i) / 5;
+    EXPECT_EQ(placesOf(crowded, i), std::set<int>{own}) << i;
+    EXPECT_EQ(placesOf(spread, i), (std::set<int>{own - 1, own + 1})) << i;
+    EXPECT_NEAR(spread.weight[i * 2] + spread.weight[i * 2 + 1], 1, 1e-6);
+  }
 }
 
 TEST(Anchors, AreFoundAgainFromTheirTargets) {
