@@ -6,7 +6,6 @@
 
 #include "core/math/quaternion.h"
 #include "core/method/joint_warp.h"
-#include "core/method/track_joints.h"
 #include "core/optim/gaussian_model.h"
 #include "core/optim/rigid_energy.h"
 #include "core/optim/schedule.h"
@@ -14,16 +13,8 @@
 namespace beam {
 namespace {
 
-constexpr int kNeighbors = 8;   // of the binding and of the skin graph (methods 3.2, 3.4)
 constexpr double kReach = 1.8;  // length of their weights in mean spacings: 0.02 m of methods 3.2
-constexpr double kApart = 0.5;  // neighbours stand this many spacings apart
 constexpr float kDecay = 0.1f;  // learning rates end at this share
-
-Anchors graphOf(const Pose& skin) {
-  const double spacing = spacingOf(skin.position_m);
-  return neighborGraph(skin.position_m, kNeighbors, static_cast<float>(kReach * spacing),
-                       static_cast<float>(kApart * spacing));
-}
 
 class SkinFollower {
  public:
@@ -37,7 +28,7 @@ class SkinFollower {
         model_(input.previous.cloud),
         before_(poseOf(input.previous.cloud)),
         reference_rest_(input.previous.rest_skin),
-        graph_(graphOf(reference_rest_)),
+        graph_(surfaceGraph(reference_rest_.position_m, kReach)),
         lists_(listsOf(graph_, reference_rest_.size())),
         warp_(start.rest_skin, input.rest_joints, boundTo(reference_rest_, input.rest_joints)),
         joints_(start.joints),
@@ -155,8 +146,8 @@ int refineStart(const FollowSurfaceOptions& o) {
 
 Anchors boundTo(const Pose& skin, const Pose& joints) {
   const double spacing = spacingOf(joints.position_m);
-  return anchorTo(skin.position_m, joints.position_m, kNeighbors, static_cast<float>(kReach * spacing),
-                  static_cast<float>(kApart * spacing));
+  return anchorTo(skin.position_m, joints.position_m, kSurfaceNeighbors, static_cast<float>(kReach * spacing),
+                  static_cast<float>(kNeighborsApart * spacing));
 }
 
 Pose carriedJoints(const Pose& tracked_before, const Pose& corrected_before, const Pose& tracked) {

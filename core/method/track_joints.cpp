@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/parallel.h"
-#include "core/math/knn.h"
 #include "core/method/fit_surface.h"
 #include "core/method/joint_warp.h"
 #include "core/method/training_views.h"
@@ -19,8 +17,6 @@
 namespace beam {
 namespace {
 
-constexpr int kNeighbors = 8;          // of the joint graph (methods 3.2)
-constexpr double kApart = 0.5;         // neighbours stand this many spacings apart
 constexpr int kFewestNodes = 64;       // of a coarse level
 constexpr float kRecolorRate = 0.01f;  // of SH band 0
 constexpr int kVelocityRounds = 8;
@@ -120,6 +116,7 @@ class JointTracker {
         history_(history),
         options_(options),
         device_(device),
+        graph_(surfaceGraph(history.rest.position_m, options.rigid_spacings)),
         previous_(poseOf(history.previous)),
         pose_(previous_) {
     const std::size_t coarse = nodesOf(options.levels > 0 ? 1 : 0);
@@ -166,17 +163,10 @@ class JointTracker {
     for (std::size_t i = 0; i < velocity.size(); ++i)
       velocity[i] = previous_.position_m[i] - history_.before_m[i];
     // A hidden joint's velocity is noise that would grow from frame to frame.
-    const Anchors graph = graphOf(history_.rest.position_m);
-    for (int round = 0; round < kVelocityRounds; ++round) velocity = averaged(graph, velocity);
+    for (int round = 0; round < kVelocityRounds; ++round) velocity = averaged(graph_, velocity);
     Pose predicted = previous_;
     for (std::size_t i = 0; i < predicted.size(); ++i) predicted.position_m[i] += velocity[i];
     if (view.lossOfAll(predicted) < view.lossOfAll(pose_)) pose_ = std::move(predicted);
-  }
-
-  Anchors graphOf(std::span<const vec3> at_rest) const {
-    const double spacing = spacingOf(at_rest);
-    return neighborGraph(at_rest, kNeighbors, static_cast<float>(options_.rigid_spacings * spacing),
-                         static_cast<float>(kApart * spacing));
   }
 
   double moveNodes(int level, LevelView& view, Progress& progress) {
@@ -184,18 +174,18 @@ class JointTracker {
     const Pose rest = chosen(history_.rest, nodes), start = chosen(pose_, nodes);
     const float reach = static_cast<float>(options_.rigid_spacings * spacingOf(rest.position_m));
     const JointWarp warp(pose_, start,
-                         anchorTo(history_.rest.position_m, rest.position_m, kNeighbors, reach));
+                         anchorTo(history_.rest.position_m, rest.position_m, kSurfaceNeighbors, reach));
     PoseModel model(start);
     const Pose before = chosen(previous_, nodes);
-    const double rigid = descend(level, graphOf(rest.position_m), rest, before, model, view, progress, &warp);
+    const double rigid = descend(level, surfaceGraph(rest.position_m, options_.rigid_spacings), rest, before,
+                                 model, view, progress, &warp);
     pose_ = warp.skin(model.pose());
     return rigid;
   }
 
   double moveJoints(LevelView& view, Progress& progress) {
     PoseModel model(pose_);
-    const double rigid = descend(0, graphOf(history_.rest.position_m), history_.rest, previous_, model, view,
-                                 progress, nullptr);
+    const double rigid = descend(0, graph_, history_.rest, previous_, model, view, progress, nullptr);
     pose_ = model.pose();
     return rigid;
   }
@@ -253,8 +243,7 @@ class JointTracker {
     for (std::size_t i = 0; i < joints.size(); ++i) {
       for (int c = 0; c < 3; ++c) shading[i][c] = changed.color.of(i)[c] - joints.color.of(i)[c];
     }
-    const Anchors graph = graphOf(history_.rest.position_m);
-    for (int round = 0; round < kSmoothRounds; ++round) shading = averaged(graph, shading);
+    for (int round = 0; round < kSmoothRounds; ++round) shading = averaged(graph_, shading);
     for (std::size_t i = 0; i < joints.size(); ++i) {
       for (int c = 0; c < 3; ++c) joints.color.of(i)[c] += shading[i][c];
     }
@@ -276,25 +265,12 @@ class JointTracker {
   const JointHistory& history_;
   const TrackJointsOptions& options_;
   ComputeDevice& device_;
+  Anchors graph_;                     // of the joints
   std::vector<std::uint32_t> order_;  // nodes of the coarse levels
   Pose previous_, pose_;
 };
 
 }  // namespace
-
-double spacingOf(std::span<const vec3> points) {
-  constexpr int kEighth = 8;
-  const double on_lattice = std::sqrt(2.0);
-  const KdTree tree(points);
-  std::vector<float> distance(points.size());
-  parallelFor(points.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      distance[i] = std::sqrt(tree.nearest(points[i], kEighth + 1).back().squared_distance);
-  });
-  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
-  std::nth_element(distance.begin(), middle, distance.end());
-  return distance.empty() ? 0 : *middle / on_lattice;
-}
 
 GaussianCloud fitFirstJoints(std::span<const FrameView> views, const PointCloud& seeds,
                              const TrackJointsOptions& options, ComputeDevice& device, Progress& progress,

@@ -63,8 +63,4 @@ TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& 
 double jointResidual(std::span<const FrameView> views, const GaussianCloud& joints, double mask_weight,
                      ComputeDevice& device);
 
-// Distance of neighbours on the surface that the points lie on, metres: the median distance to the 8th
-// nearest over its value on a square lattice. Copies at one place, which MCMC makes, do not count.
-double spacingOf(std::span<const vec3> points);
-
 }  // namespace beam

@@ -77,6 +77,26 @@ Anchors neighborGraph(std::span<const vec3> points, int count, float length_m, f
   return anchored(points, points, count, length_m, apart_m, true);
 }
 
+double spacingOf(std::span<const vec3> points) {
+  constexpr int kEighth = 8;
+  const double on_lattice = std::sqrt(2.0);
+  const KdTree tree(points);
+  std::vector<float> distance(points.size());
+  parallelFor(points.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      distance[i] = std::sqrt(tree.nearest(points[i], kEighth + 1).back().squared_distance);
+  });
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  return distance.empty() ? 0 : *middle / on_lattice;
+}
+
+Anchors surfaceGraph(std::span<const vec3> points, double reach) {
+  const double spacing = spacingOf(points);
+  return neighborGraph(points, kSurfaceNeighbors, static_cast<float>(reach * spacing),
+                       static_cast<float>(kNeighborsApart * spacing));
+}
+
 AnchorLists listsOf(const Anchors& anchors, std::size_t targets) {
   AnchorLists lists{std::vector<std::uint32_t>(targets + 1, 0),
                     std::vector<std::uint32_t>(anchors.target.size())};

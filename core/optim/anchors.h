@@ -45,6 +45,16 @@ Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, in
 // for fewer than 2 points.
 Anchors neighborGraph(std::span<const vec3> points, int count, float length_m, float apart_m = 0);
 
+// Distance of neighbours on the surface that the points lie on, metres: the median distance to the 8th
+// nearest over its value on a square lattice. Copies at one place, which MCMC makes, do not count.
+double spacingOf(std::span<const vec3> points);
+
+inline constexpr int kSurfaceNeighbors = 8;     // of graphs and bindings (methods 3.2, 3.4)
+inline constexpr double kNeighborsApart = 0.5;  // spacings
+
+// The graph of points on a surface: their neighbours, weights of a length of `reach` spacings.
+Anchors surfaceGraph(std::span<const vec3> points, double reach);
+
 AnchorLists listsOf(const Anchors& anchors, std::size_t targets);
 
 }  // namespace beam
