@@ -6,6 +6,7 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/method/interpolate_skin.h"
+#include "core/stages/carried_skin.h"
 
 namespace beam {
 namespace {
@@ -22,9 +23,6 @@ struct Solved {
   fs::path skin, joints;
   std::optional<fs::path> materials;
   bool refined = false;
-
-  // Carried there from the frame before; false: fitted anew.
-  bool carried() const { return fs::exists(skin / kRestPoseFile); }
 };
 
 std::optional<Solved> solvedAt(const Project& project, FrameIndex frame, const char* step) {
@@ -38,19 +36,10 @@ std::optional<std::pair<Solved, Solved>> solvedPair(const Project& project, cons
   for (const char* step : {kRefine, kFit}) {
     auto a = solvedAt(project, between.before, step), b = solvedAt(project, between.after, step);
     if (!a || !b) continue;
-    if (!b->carried()) return std::nullopt;
+    if (!isCarried(b->skin)) return std::nullopt;
     return std::pair(std::move(*a), std::move(*b));
   }
   return std::nullopt;
-}
-
-CarriedSkin skinOf(const Solved& solved, GaussianCloud cloud) {
-  if (solved.carried()) {
-    return {std::move(cloud), readPosePly(solved.skin / kRestPoseFile),
-            readPosePly(solved.skin / kJointPoseFile)};
-  }
-  Pose rest = poseOf(cloud);  // a first frame is its own rest
-  return {std::move(cloud), std::move(rest), poseOf(readSplatPly(solved.joints / kJointsFile).cloud)};
 }
 
 FrameResult interpolated(const Solved& a, const Solved& b, double share) {
@@ -59,7 +48,8 @@ FrameResult interpolated(const Solved& a, const Solved& b, double share) {
     return readSplatPly(materials ? *s.materials / kMaterialsFile : s.skin / kCloudFile);
   };
   SplatFile from = read(a), to = read(b);
-  FrameResult out{.cloud = interpolateSkin(skinOf(a, std::move(from.cloud)), skinOf(b, std::move(to.cloud)),
+  FrameResult out{.cloud = interpolateSkin(readCarriedSkin(std::move(from.cloud), a.skin, &a.joints),
+                                           readCarriedSkin(std::move(to.cloud), b.skin, &b.joints),
                                            readPosePly(b.joints / kRestPoseFile), share),
                   .materials = std::nullopt,
                   .refined = a.refined && b.refined,

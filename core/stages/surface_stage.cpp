@@ -10,6 +10,7 @@
 #include "core/pipeline/frame_result.h"
 #include "core/scene/pose.h"
 #include "core/stages/builtin_stages.h"
+#include "core/stages/carried_skin.h"
 #include "core/stages/score_files.h"
 #include "core/stages/track_files.h"
 #include "core/stages/training_input.h"
@@ -101,8 +102,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     const Carried in = carried(c);
     const Pose tracked_before = poseOf(readSplatPly(*c.previousResult("track.joints") / kJointsFile).cloud);
     const Pose tracked = poseOf(readSplatPly(c.input("track.joints") / kJointsFile).cloud);
-    const Pose start = carriedJoints(
-        tracked_before, in.previous.joints.size() ? in.previous.joints : tracked_before, tracked);
+    const Pose start = carriedJoints(tracked_before, in.previous.joints, tracked);
     keepSkin(c, followAppearance(views, {in.previous, in.rest_joints, start}, options_.fit, options_.later,
                                  c.device, c.progress, c.preview));
   }
@@ -133,21 +133,15 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
   }
 
   struct Carried {
-    CarriedSkin previous;  // joints empty: those that were tracked
+    CarriedSkin previous;  // refine does not see the joints of a first frame: empty
     Pose rest_joints;
   };
 
   static Carried carried(const StepContext& c) {
     const std::filesystem::path& before = *c.previousResult("surface.refine");
-    Carried in{{readSplatPly(before / kCloudFile).cloud, {}, {}},
-               readPosePly(c.input("track.joints") / kRestPoseFile)};
-    if (std::filesystem::exists(before / kRestPoseFile)) {
-      in.previous.rest_skin = readPosePly(before / kRestPoseFile);
-      in.previous.joints = readPosePly(before / kJointPoseFile);
-    } else {
-      in.previous.rest_skin = poseOf(in.previous.cloud);  // a first frame is its own rest
-    }
-    return in;
+    return {
+        readCarriedSkin(readSplatPly(before / kCloudFile).cloud, before, c.previousResult("track.joints")),
+        readPosePly(c.input("track.joints") / kRestPoseFile)};
   }
 
   // At the resolution of the fit; `beam evaluate` scores the whole pictures.
