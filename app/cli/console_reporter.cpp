@@ -9,7 +9,8 @@ namespace {
 constexpr int kSomeFailed = 10, kInterrupted = 75;
 
 std::string nameOf(const StepRef& ref) {
-  return ref.frame ? fmt::format("frame {} {}", ref.frame_name, ref.step) : ref.step;
+  if (!ref.frame) return ref.step;
+  return fmt::format("frame {}{} {}", ref.frame_name, ref.lead ? " (lead)" : "", ref.step);
 }
 
 std::string namesOf(const std::vector<StepFailed>& failed) {

@@ -83,7 +83,7 @@ void Job::runAll(const RunRequest& request) {
   finished_.notes = plan.notes;
   const StageRegistry& stages = project_.setup().stages;
   for (const std::string& step : plan.project_steps) weight_total_ += stages.step(step).weight;
-  for (const FrameIndex frame : plan.frames) weight_total_ += weightOf(plan, frame);
+  for (const Turn& turn : plan.turns) weight_total_ += weightOf(plan, turn);
   runProjectSteps(plan);
   runFrames(plan);
 }
@@ -95,51 +95,49 @@ void Job::runProjectSteps(const RunPlan& plan) {
 }
 
 void Job::runFrames(const RunPlan& plan) {
-  std::deque<FrameIndex> todo(plan.frames.begin(), plan.frames.end());
-  pending_.insert(plan.frames.begin(), plan.frames.end());
+  std::deque<Turn> todo(plan.turns.begin(), plan.turns.end());
+  pending_.insert(plan.turns.begin(), plan.turns.end());
   for (const std::string& step : plan.frame_steps) {
     if (readsPictures(project_.setup().stages.step(step))) picture_steps_.push_back(step);
   }
   std::size_t busy_in_a_row = 0;
   while (!todo.empty()) {
-    const FrameIndex frame = todo.front();
+    const Turn turn = todo.front();
     todo.pop_front();
     next_ = todo.empty() ? std::nullopt : std::optional(todo.front());
-    if (runFrame(plan, frame) != Ended::Busy) {
-      pending_.erase(frame);
+    if (runFrame(plan, turn) != Ended::Busy) {
+      pending_.erase(turn);
       busy_in_a_row = 0;
       continue;
     }
     // Somebody else is at this frame: take the others first, and wait only when all are taken.
-    todo.push_back(frame);
+    todo.push_back(turn);
     if (++busy_in_a_row < todo.size()) continue;
     waitALittle();
     busy_in_a_row = 0;
   }
 }
 
-Job::Ended Job::runFrame(const RunPlan& plan, FrameIndex frame) {
-  if (const auto lacked = waits_for_.find(frame); lacked != waits_for_.end()) {
-    const std::optional<FrameIndex> before = project_.takeOf(frame).before(frame);
-    if (before && pending_.contains(*before) && !project_.store().has(lacked->second)) return Ended::Busy;
+Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
+  if (const auto lacked = waits_for_.find(turn); lacked != waits_for_.end()) {
+    if (awaitsFrameBefore(turn) && !project_.store().has(lacked->second)) return Ended::Busy;
     waits_for_.erase(lacked);
   }
   bool failed = false;
-  for (const std::string& step : plan.frame_steps) {
-    if (!project_.applies(step, frame)) continue;
+  for (const std::string& step : stepsOf(plan, turn)) {
     if (failed) {
       weight_total_ -= project_.setup().stages.step(step).weight;
       continue;
     }
     try {
-      const Ended ended = runStep(step, frame);
+      const Ended ended = runStep(step, turn);
       if (ended == Ended::Busy) return ended;
       if (ended != Ended::Severed) continue;
-      splitTakeAt(plan, frame);
-      return runFrame(plan, frame);
+      splitTakeAt(plan, turn);
+      return runFrame(plan, turn);
     } catch (const Error& e) {
       if (!spoilsOneFrameOnly(e.kind())) throw;
-      failFrame(refTo(step, frame), e.what());
+      failFrame(refTo(step, turn), e.what());
       weight_total_ -= weight_now_;
       failed = true;
     }
@@ -147,17 +145,16 @@ Job::Ended Job::runFrame(const RunPlan& plan, FrameIndex frame) {
   return Ended::Computed;
 }
 
-Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame) {
+Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
   if (stop_.stop_requested()) throw Cancelled();
-  const std::pair<std::string, int> id(step, frame ? frame->value : -1);
-  if (acknowledged_.count(id)) return Ended::Reused;
+  if (acknowledged_.contains({step, turn})) return Ended::Reused;
   const StepInfo& info = project_.setup().stages.step(step);
-  now_ = refTo(step, frame);
-  if (stages_told_.emplace(stageOf(step), id.second).second) {
+  turn_ = turn;
+  now_ = refTo(step, turn);
+  if (stages_told_.emplace(stageOf(step), turn).second) {
     tell_(StageStarted{stageOf(step), now_.frame, now_.frame_name});
   }
-  const FrameIndex index = frame.value_or(FrameIndex{});
-  const std::optional<KeyIngredients> ingredients = ingredientsOf(step, frame);
+  const std::optional<KeyIngredients> ingredients = ingredientsOf(step, turn);
   if (!ingredients) return Ended::Severed;
   const Digest key = keyOf(*ingredients);
   weight_now_ = info.weight;
@@ -167,7 +164,8 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
     return Ended::Reused;
   };
   if (project_.store().verified(key)) return reuse();
-  if (const Ended ready = afterPrevious(info, *ingredients, index); ready != Ended::Computed) return ready;
+  if (const Ended ready = afterPrevious(info, *ingredients, turn.value_or(Turn{})); ready != Ended::Computed)
+    return ready;
   if (project_.readOnly()) {
     throw Error(
         Error::Kind::Storage,
@@ -182,48 +180,65 @@ Job::Ended Job::runStep(const std::string& step, std::optional<FrameIndex> frame
   return Ended::Computed;
 }
 
-std::optional<KeyIngredients> Job::ingredientsOf(const std::string& step,
-                                                 std::optional<FrameIndex> frame) const {
+std::optional<KeyIngredients> Job::ingredientsOf(const std::string& step, std::optional<Turn> turn) const {
+  if (!turn) return project_.ingredients(step, FrameIndex{});
+  const Take take = takeOf(*turn);
   try {
-    return project_.ingredients(step, frame.value_or(FrameIndex{}));
+    return project_.ingredients(step, take, turn->frame);
   } catch (const Error& e) {
-    const std::optional<FrameIndex> before = frame ? project_.takeOf(*frame).before(*frame) : std::nullopt;
     // If the file is one of this frame, it fails again as the first of its take, and for good.
-    if (!before || pending_.contains(*before) || !spoilsOneFrameOnly(e.kind())) throw;
+    if (!take.before(turn->frame) || awaitsFrameBefore(*turn) || !spoilsOneFrameOnly(e.kind())) throw;
     return std::nullopt;
   }
 }
 
-Job::Ended Job::afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, FrameIndex frame) {
+// Whether this run is still to solve the frame before in the same take.
+bool Job::awaitsFrameBefore(const Turn& turn) const {
+  const Take take = takeOf(turn);
+  const std::optional<FrameIndex> before = take.before(turn.frame);
+  if (!before) return false;
+  const bool owned = project_.takeOf(*before) == take;
+  return pending_.contains({*before, turn.of}) || (owned && pending_.contains({*before, *before}));
+}
+
+std::vector<std::string> Job::stepsOf(const RunPlan& plan, const Turn& turn) const {
+  std::vector<std::string> steps = turn.lead() ? plan.lead_steps : plan.frame_steps;
+  const Take take = takeOf(turn);
+  std::erase_if(steps, [&](const std::string& id) {
+    return !applies(project_.setup().stages.step(id), take, turn.frame);
+  });
+  return steps;
+}
+
+Job::Ended Job::afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, const Turn& turn) {
   for (const std::string& previous : step.later.previous) {
     const auto key = ingredients.upstream.find(previousName(previous));
     if (key == ingredients.upstream.end() || project_.store().verified(key->second)) continue;
-    if (!pending_.contains(*project_.takeOf(frame).before(frame))) return Ended::Severed;
-    waits_for_[frame] = key->second;
+    if (!awaitsFrameBefore(turn)) return Ended::Severed;
+    waits_for_[turn] = key->second;
     return Ended::Busy;
   }
   return Ended::Computed;
 }
 
 // A frame whose predecessor failed goes on as the first of a take of its own.
-void Job::splitTakeAt(const RunPlan& plan, FrameIndex frame) {
-  const FrameIndex before = *project_.takeOf(frame).before(frame);
+void Job::splitTakeAt(const RunPlan& plan, const Turn& turn) {
+  const Take take = takeOf(turn);
+  const FrameIndex before = *take.before(turn.frame);
   logWarning("frame {} begins a new take: frame {}, on which it would build, has no result",
-             refTo({}, frame).frame_name, refTo({}, before).frame_name);
-  weight_total_ -= weightOf(plan, frame);
-  project_.splitTake(frame);
-  weight_total_ += weightOf(plan, frame);
+             refTo({}, turn).frame_name, refTo({}, Turn{before, before}).frame_name);
+  weight_total_ -= weightOf(plan, turn);
+  project_.splitTake(take, turn.frame);
+  weight_total_ += weightOf(plan, turn);
   for (const std::string& step : plan.frame_steps) {
-    if (acknowledged_.erase({step, frame.value}) > 0)
+    if (acknowledged_.erase({step, turn}) > 0)
       weight_total_ += project_.setup().stages.step(step).weight;  // to be done once more
   }
 }
 
-double Job::weightOf(const RunPlan& plan, FrameIndex frame) const {
+double Job::weightOf(const RunPlan& plan, const Turn& turn) const {
   double sum = 0;
-  for (const std::string& step : plan.frame_steps) {
-    if (project_.applies(step, frame)) sum += project_.setup().stages.step(step).weight;
-  }
+  for (const std::string& step : stepsOf(plan, turn)) sum += project_.setup().stages.step(step).weight;
   return sum;
 }
 
@@ -243,7 +258,8 @@ FrameStore* Job::picturesFor(FrameIndex frame) {
   pictures_of_ = frame;
   pictures_->expect(std::nullopt);
   try {
-    if (next_ && project_.lacksAny(picture_steps_, *next_)) pictures_->expect(next_);
+    if (next_ && project_.lacksAny(picture_steps_, takeOf(*next_), next_->frame))
+      pictures_->expect(next_->frame);
   } catch (const Error& e) {
     logDebug("no pictures are decoded ahead: {}", e.what());  // said again when it is the frame's turn
   }
@@ -318,7 +334,8 @@ std::filesystem::path Job::resultOf(const std::string& step, const Digest& key, 
 
 // A result made while its input changed would sit under a key that promises something else.
 void Job::checkInputs(const StepRef& ref, const KeyIngredients& before) const {
-  if (project_.ingredients(ref.step, ref.frame.value_or(FrameIndex{})).inputs == before.inputs) return;
+  const FrameIndex frame = ref.frame.value_or(FrameIndex{});
+  if (project_.ingredients(ref.step, takeAtWork(), frame).inputs == before.inputs) return;
   throw Error(
       Error::Kind::Data,
       fmt::format("input files of {} changed while it ran; its result is not kept, run again", ref.step));
@@ -327,7 +344,8 @@ void Job::checkInputs(const StepRef& ref, const KeyIngredients& before) const {
 void Job::failFrame(const StepRef& ref, const std::string& message) {
   const std::string told = fmt::format("frame {}: {} gave up: {}", ref.frame_name, ref.step, message);
   try {
-    project_.store().noteFailure(project_.key(ref.step, *ref.frame), {ref.step, ref.frame_name, message});
+    project_.store().noteFailure(project_.key(ref.step, takeAtWork(), *ref.frame),
+                                 {ref.step, ref.frame_name, message});
   } catch (const Error& e) {
     logWarning("the failure of frame {} could not be noted: {}", ref.frame_name, e.what());
   }
@@ -338,7 +356,7 @@ void Job::failFrame(const StepRef& ref, const std::string& message) {
 }
 
 void Job::acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds) {
-  acknowledged_.emplace(ref.step, ref.frame ? ref.frame->value : -1);
+  acknowledged_.emplace(ref.step, turn_);
   ++(reused ? finished_.reused : finished_.computed);
   tell_(StepFinished{ref, key, reused, seconds});
 }
@@ -362,9 +380,10 @@ void Job::waitALittle() const {
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
-StepRef Job::refTo(const std::string& step, std::optional<FrameIndex> frame) const {
-  return {step, frame,
-          frame ? project_.capture().frames[static_cast<std::size_t>(frame->value)] : std::string()};
+StepRef Job::refTo(const std::string& step, std::optional<Turn> turn) const {
+  if (!turn) return {step, std::nullopt, {}};
+  const auto index = static_cast<std::size_t>(turn->frame.value);
+  return {step, turn->frame, project_.capture().frames[index], turn->lead()};
 }
 
 double Job::secondsSince(Clock::time_point start) const {

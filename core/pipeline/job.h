@@ -46,14 +46,17 @@ class Job {
   void runProjectSteps(const RunPlan& plan);
   void runFrames(const RunPlan& plan);
   // Busy: come back later.
-  Ended runFrame(const RunPlan& plan, FrameIndex frame);
-  Ended runStep(const std::string& step, std::optional<FrameIndex> frame);
+  Ended runFrame(const RunPlan& plan, const Turn& turn);
+  Ended runStep(const std::string& step, std::optional<Turn> turn);
   // None: they hang on a file of an earlier frame that cannot be read.
-  std::optional<KeyIngredients> ingredientsOf(const std::string& step, std::optional<FrameIndex> frame) const;
+  std::optional<KeyIngredients> ingredientsOf(const std::string& step, std::optional<Turn> turn) const;
   // Whether a step can begin now; Busy or Severed when what it reads of the frame before is not there.
-  Ended afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, FrameIndex frame);
-  void splitTakeAt(const RunPlan& plan, FrameIndex frame);
-  double weightOf(const RunPlan& plan, FrameIndex frame) const;
+  Ended afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, const Turn& turn);
+  void splitTakeAt(const RunPlan& plan, const Turn& turn);
+  Take takeOf(const Turn& turn) const { return project_.takeOf(turn.of); }
+  bool awaitsFrameBefore(const Turn& turn) const;
+  std::vector<std::string> stepsOf(const RunPlan& plan, const Turn& turn) const;
+  double weightOf(const RunPlan& plan, const Turn& turn) const;
   void compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
   void build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record);
   std::filesystem::path resultOf(const std::string& step, const Digest& key, const StepRef& reader) const;
@@ -61,12 +64,13 @@ class Job {
   // Computes once more without pictures held in memory when there is too little of it.
   void computeWithin(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
   FrameStore* picturesFor(FrameIndex frame);
+  Take takeAtWork() const { return turn_ ? takeOf(*turn_) : Take{}; }
   void failFrame(const StepRef& ref, const std::string& message);
   void acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds);
   void reportProgress(const StepRef& ref, const ProgressReport& report);
   void waitALittle() const;
 
-  StepRef refTo(const std::string& step, std::optional<FrameIndex> frame) const;
+  StepRef refTo(const std::string& step, std::optional<Turn> turn) const;
   double secondsSince(Clock::time_point start) const;
 
   Project& project_;
@@ -77,14 +81,14 @@ class Job {
   JobFinished finished_;
   Clock::time_point started_ = Clock::now(), step_started_ = started_;
   double weight_total_ = 0, weight_done_ = 0, weight_now_ = 0;
-  std::set<std::pair<std::string, int>> acknowledged_;  // step, frame or -1
-  std::set<std::pair<std::string, int>> stages_told_;
-  std::set<FrameIndex> pending_;            // frames that this run has not finished
-  std::map<FrameIndex, Digest> waits_for_;  // the result of the frame before that each busy one lacked
+  std::set<std::pair<std::string, std::optional<Turn>>> acknowledged_, stages_told_;  // by step, by stage
+  std::set<Turn> pending_;                  // what this run has not finished
+  std::map<Turn, Digest> waits_for_;        // the result of the frame before that each busy one lacked
   std::vector<std::string> picture_steps_;  // of a frame
   std::unique_ptr<FrameStore> pictures_;
-  std::optional<FrameIndex> pictures_of_, next_;  // the frame whose turn it is, and the one after it
-  StepRef now_;                                   // the step at work, for messages
+  std::optional<FrameIndex> pictures_of_;
+  std::optional<Turn> turn_, next_;  // the one at work, none: a step of the project; the one after it
+  StepRef now_;                      // the step at work, for messages
   std::unique_ptr<SessionLog> log_;
   int sink_ = 0;
   std::mutex warnings_mutex_;

@@ -19,6 +19,7 @@ struct StepRef {
   std::string step;  // full id: "surface.fit"
   std::optional<FrameIndex> frame;
   std::string frame_name;  // the capture's own; empty without frame
+  bool lead = false;       // of a frame that is only there for the take after it to build on (Take::lead)
 };
 
 struct StageStarted {

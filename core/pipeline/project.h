@@ -90,13 +90,15 @@ class Project {
   // Changes what other processes left in project.json, at once, and has the same here. A project that is
   // read-only or not on disk yet changes here alone. Throws Error{Locked} or Error{Storage}.
   void changeTakes(const std::function<std::vector<Take>(std::vector<Take>)>& change);
-  // Makes `frame` the first of its take, likewise; further changes by others do not reach this project.
-  void splitTake(FrameIndex frame);
+  // Makes `frame`, a member of `take`, the first of one, likewise; further changes by others do not reach
+  // this project.
+  void splitTake(const Take& take, FrameIndex frame);
   // Those that are in project.json now; a project that is read-only or not on disk keeps its own.
   void readTakesAgain();
   void adoptTakes(const Project& other);
 
-  // --- Steps. `step` is a full id; `frame` is ignored for steps that serve the whole project. ---
+  // --- Steps. `step` is a full id; `frame` is ignored for steps that serve the whole project. A frame is
+  // seen as a member of the take that owns it, or of the one that is named. ---
   // Why a stage cannot run ("" when it can): "needs a panorama: ...".
   std::string blockedReason(std::string_view stage) const;
   // False: the step is not for this frame of its take; it has no key and no result.
@@ -104,11 +106,13 @@ class Project {
   // The user's files that the step reads itself are looked at each time; keys of what it builds on are kept
   // until settings or takes change, or forgetKeys(): every frame's key holds that of the frame before.
   KeyIngredients ingredients(std::string_view step, FrameIndex frame) const;
+  KeyIngredients ingredients(std::string_view step, const Take& take, FrameIndex frame) const;
   Digest key(std::string_view step, FrameIndex frame) const;
+  Digest key(std::string_view step, const Take& take, FrameIndex frame) const;
   void forgetKeys() const { memo_.clear(); }
   // Whether the frame has no result yet of one of the steps. Keeps no keys: before its turn its files may
   // change.
-  bool lacksAny(const std::vector<std::string>& steps, FrameIndex frame) const;
+  bool lacksAny(const std::vector<std::string>& steps, const Take& take, FrameIndex frame) const;
   StepState state(std::string_view step, FrameIndex frame) const;
   // Of a whole stage for a frame: the least finished of its steps that are for it; Done when there are none.
   StepState stageState(std::string_view stage, FrameIndex frame) const;
@@ -128,7 +132,6 @@ class Project {
   void forgetCapture();
   const std::map<std::string, FieldValue>& preset() const;
   bool savesTakes() const;
-  KeyIngredients ingredientsAt(const std::string& step, const Take& take, FrameIndex frame) const;
   Digest keyAt(const std::string& step, const Take& take, FrameIndex frame) const;
   void keepKeysBefore(const std::string& step, const Take& take, FrameIndex frame) const;
   const std::map<std::string, std::string>& parametersOf(const std::string& step, bool later) const;

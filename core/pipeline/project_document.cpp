@@ -42,7 +42,7 @@ void readCapture(const Json& j, ProjectDocument& document) {
 void readTakes(const Json& j, ProjectDocument& document) {
   for (const Json& take : j) {
     document.takes.push_back({take.at("first").get<std::string>(), take.at("last").get<std::string>(),
-                              take.at("step").get<int>()});
+                              take.at("step").get<int>(), take.value("lead", 0)});
   }
 }
 
@@ -176,7 +176,9 @@ std::string toJson(const ProjectDocument& document) {
     std::visit([&, &k = key](const auto& v) { j["settings"][k] = v; }, value);
   }
   for (const SavedTake& take : document.takes) {
-    j["takes"].push_back({{"first", take.first}, {"last", take.last}, {"step", take.step}});
+    Json saved = {{"first", take.first}, {"last", take.last}, {"step", take.step}};
+    if (take.lead > 0) saved["lead"] = take.lead;
+    j["takes"].push_back(std::move(saved));
   }
   const Json unknown = Json::parse(document.unknown);
   for (const auto& [key, value] : unknown.items()) j[key] = value;

@@ -21,7 +21,7 @@ Take Project::takeOf(FrameIndex frame) const {
     for (std::int32_t f = 0; f < static_cast<std::int32_t>(capture().frames.size()); ++f)
       owners.push_back({{f}, {f}, 1});
     for (const Take& take : takes()) {
-      for (const FrameIndex f : take.frames()) owners[static_cast<std::size_t>(f.value)] = take;
+      for (const FrameIndex f : take.claimed()) owners[static_cast<std::size_t>(f.value)] = take;
     }
   }
   const bool known = frame.value >= 0 && frame.value < static_cast<int>(owners.size());
@@ -41,9 +41,9 @@ void Project::changeTakes(const std::function<std::vector<Take>(std::vector<Take
   memo_.clear();
 }
 
-void Project::splitTake(FrameIndex frame) {
-  const std::vector<Take> own = beam::splitTake(takes(), frame);
-  changeTakes([&](std::vector<Take> others) { return beam::splitTake(std::move(others), frame); });
+void Project::splitTake(const Take& take, FrameIndex frame) {
+  const std::vector<Take> own = beam::splitTake(takes(), take, frame);
+  changeTakes([&](std::vector<Take> others) { return beam::splitTake(std::move(others), take, frame); });
   document_.takes = saveTakes(own, capture().frames);
   memo_.clear();
 }
@@ -116,7 +116,7 @@ void Project::keepKeysBefore(const std::string& step, const Take& take, FrameInd
   for (; start < frame; start.value += take.step) {
     for (const std::string& id : chain) {
       if (!toDo(id, start)) continue;
-      const Digest key = keyOf(ingredientsAt(id, take, start));
+      const Digest key = keyOf(ingredients(id, take, start));
       memo_.keys.emplace(KeyMemo::placeOf(id, take, start), key);
     }
   }
@@ -126,12 +126,13 @@ Digest Project::keyAt(const std::string& step, const Take& take, FrameIndex fram
   const KeyMemo::Place place = setup_->stages.step(step).per_frame ? KeyMemo::placeOf(step, take, frame)
                                                                    : KeyMemo::placeOf(step, {}, {});
   if (const auto known = memo_.keys.find(place); known != memo_.keys.end()) return known->second;
-  const Digest key = keyOf(ingredientsAt(step, take, frame));
+  const Digest key = keyOf(ingredients(step, take, frame));
   memo_.keys.emplace(place, key);
   return key;
 }
 
-KeyIngredients Project::ingredientsAt(const std::string& step, const Take& take, FrameIndex frame) const {
+KeyIngredients Project::ingredients(std::string_view step_id, const Take& take, FrameIndex frame) const {
+  const std::string step(step_id);
   const StageRegistry& stages = setup_->stages;
   const StepInfo& info = stages.step(step);
   if (!beam::applies(info, take, frame))
@@ -171,25 +172,27 @@ KeyIngredients Project::ingredientsAt(const std::string& step, const Take& take,
 }
 
 KeyIngredients Project::ingredients(std::string_view step, FrameIndex frame) const {
-  return ingredientsAt(std::string(step), takeOf(frame), frame);
+  return ingredients(step, takeOf(frame), frame);
 }
 
-Digest Project::key(std::string_view step, FrameIndex frame) const {
+Digest Project::key(std::string_view step, FrameIndex frame) const { return key(step, takeOf(frame), frame); }
+
+Digest Project::key(std::string_view step, const Take& take, FrameIndex frame) const {
   const std::string id(step);
-  const Take take = takeOf(frame);
   const KeyMemo::Place place =
       setup_->stages.step(step).per_frame ? KeyMemo::placeOf(id, take, frame) : KeyMemo::placeOf(id, {}, {});
-  const Digest key = keyOf(ingredientsAt(id, take, frame));
+  const Digest key = keyOf(ingredients(id, take, frame));
   const auto [known, fresh] = memo_.keys.try_emplace(place, key);
   if (fresh || known->second == key) return key;
   memo_.clear();  // its input files are others now: so is the key of all that builds on them
   return keyAt(id, take, frame);
 }
 
-bool Project::lacksAny(const std::vector<std::string>& steps, FrameIndex frame) const {
+bool Project::lacksAny(const std::vector<std::string>& steps, const Take& take, FrameIndex frame) const {
   const std::map<KeyMemo::Place, Digest> kept = memo_.keys;
   const bool lacks = std::any_of(steps.begin(), steps.end(), [&](const std::string& step) {
-    return applies(step, frame) && !store_->has(keyOf(ingredients(step, frame)));
+    return beam::applies(setup_->stages.step(step), take, frame) &&
+           !store_->has(keyOf(ingredients(step, take, frame)));
   });
   memo_.keys = kept;
   return lacks;

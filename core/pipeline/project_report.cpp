@@ -75,9 +75,11 @@ std::string stepText(const Project& project, const std::string& id, const StepIn
 std::string takesText(const Project& project) {
   std::string text;
   for (const Take& take : project.takes()) {
-    text += fmt::format("{} {} to {}{}", text.empty() ? "takes" : ",", frameName(project, take.first),
-                        frameName(project, take.last),
-                        take.step == 1 ? std::string() : fmt::format(" in steps of {}", take.step));
+    text += fmt::format(
+        "{} {} to {}{}{}", text.empty() ? "takes" : ",", frameName(project, take.begin()),
+        frameName(project, take.last),
+        take.step == 1 ? std::string() : fmt::format(" in steps of {}", take.step),
+        take.lead == 0 ? std::string() : fmt::format(" (solved from {} on)", frameName(project, take.first)));
   }
   return text.empty() ? text : text + "\n";
 }
@@ -85,9 +87,10 @@ std::string takesText(const Project& project) {
 Json takesJson(const Project& project) {
   Json takes = Json::array();
   for (const Take& take : project.takes()) {
-    takes.push_back({{"first", frameName(project, take.first)},
+    takes.push_back({{"first", frameName(project, take.begin())},
                      {"last", frameName(project, take.last)},
-                     {"step", take.step}});
+                     {"step", take.step},
+                     {"solved_from", frameName(project, take.first)}});
   }
   return takes;
 }

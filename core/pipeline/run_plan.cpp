@@ -30,36 +30,53 @@ std::vector<FrameIndex> framesOf(const Project& project, const RunRequest& reque
 
 bool namesTakes(const RunRequest& request) { return !request.frames.empty() || request.every > 1; }
 
-// A take whole before the next, in the order of their first frames.
-void sortByTakes(const Project& project, std::vector<FrameIndex>& frames) {
-  std::map<std::tuple<int, int, int>, FrameIndex> begins;
-  const auto beginOf = [&](FrameIndex frame) {
+// A take whole before the next, in the order of their first frames; before these, what they build on.
+std::vector<Turn> turnsOf(const Project& project, const std::vector<FrameIndex>& frames) {
+  std::map<std::tuple<int, int, int, int>, std::size_t> places;
+  std::vector<std::vector<Turn>> takes;
+  for (const FrameIndex frame : frames) {
     const Take take = project.takeOf(frame);
-    return begins.try_emplace({take.first.value, take.last.value, take.step}, frame).first->second;
-  };
-  std::vector<std::pair<FrameIndex, FrameIndex>> order;
-  order.reserve(frames.size());
-  for (const FrameIndex frame : frames) order.emplace_back(beginOf(frame), frame);
-  std::sort(order.begin(), order.end());
-  for (std::size_t i = 0; i < frames.size(); ++i) frames[i] = order[i].second;
+    const auto [place, fresh] =
+        places.try_emplace({take.first.value, take.last.value, take.step, take.lead}, takes.size());
+    if (fresh) {
+      takes.emplace_back();
+      for (FrameIndex before = take.first; before < frame; before.value += take.step)
+        takes.back().push_back({before, frame});
+    }
+    takes[place->second].push_back({frame, frame});
+  }
+  std::vector<Turn> turns;
+  for (const std::vector<Turn>& take : takes) turns.insert(turns.end(), take.begin(), take.end());
+  return turns;
 }
 
-constexpr const char* kSegmentSetting = "track.segment_frames";
-constexpr int kSegmentFrames = 50;  // of a pipeline that has no such setting
-
-int segmentFrames(const Project& project) {
+// `fallback`: of a pipeline that has no such setting.
+int setting(const Project& project, std::string_view name, int fallback) {
   for (const Field& field : project.fields()) {
-    if (field.info.name != kSegmentSetting) continue;
+    if (field.info.name != name) continue;
     if (const int* value = std::get_if<int>(&field.value)) return *value;
   }
-  return kSegmentFrames;
+  return fallback;
+}
+
+// Steps of earlier frames that the steps of a later one read, with all that these read.
+std::set<std::string> stepsBefore(const StageRegistry& stages, const std::vector<std::string>& steps) {
+  std::set<std::string> before;
+  for (const std::string& id : steps) {
+    for (const std::string& previous : stages.step(id).later.previous) stages.addWithReads(previous, before);
+  }
+  return before;
 }
 
 }  // namespace
 
 void arrangeTakes(Project& project, const RunRequest& request) {
+  const int overlap = request.overlap ? *request.overlap : setting(project, "track.overlap", 0);
   if (namesTakes(request)) {
-    const std::vector<Take> wanted = takesOfFrames(framesOf(project, request), request.every);
+    std::vector<Take> wanted = takesOfFrames(framesOf(project, request), request.every);
+    for (Take& take : wanted) {
+      if (take.count() > 1) take = withLead(take, overlap);
+    }
     project.changeTakes([&](std::vector<Take> takes) {
       for (const Take& take : wanted) takes = addTake(std::move(takes), take);
       return takes;
@@ -67,8 +84,10 @@ void arrangeTakes(Project& project, const RunRequest& request) {
     return;
   }
   const int frames = static_cast<int>(project.capture().frames.size());
-  const int segment = request.segment_frames ? *request.segment_frames : segmentFrames(project);
-  project.changeTakes([&](std::vector<Take> takes) { return joinTakes(std::move(takes), frames, segment); });
+  const int segment =
+      request.segment_frames ? *request.segment_frames : setting(project, "track.segment_frames", 50);
+  project.changeTakes(
+      [&](std::vector<Take> takes) { return joinTakes(std::move(takes), frames, segment, overlap); });
 }
 
 RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
@@ -100,10 +119,15 @@ RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
       if (chosen.count(id)) (step.per_frame ? plan.frame_steps : plan.project_steps).push_back(id);
     }
   }
-  for (const Take& take : takesOfFrames(framesOf(project, request), request.every)) {
-    for (const FrameIndex frame : take.frames()) plan.frames.push_back(frame);
+  const std::set<std::string> before = stepsBefore(stages, plan.frame_steps);
+  for (const std::string& id : plan.frame_steps) {
+    if (before.contains(id)) plan.lead_steps.push_back(id);
   }
-  sortByTakes(project, plan.frames);
+  std::vector<FrameIndex> frames;
+  for (const Take& take : takesOfFrames(framesOf(project, request), request.every)) {
+    for (const FrameIndex frame : take.frames()) frames.push_back(frame);
+  }
+  plan.turns = turnsOf(project, frames);
   return plan;
 }
 

@@ -20,12 +20,24 @@ struct RunRequest {
   int every = 1;           // K: only every Kth frame, each building on the one K before
   // Of a whole run: the longest take it makes, 0: no longest; absent: the setting track.segment_frames.
   std::optional<int> segment_frames = {};
+  // Of new takes: frames solved before their first; absent: the setting track.overlap.
+  std::optional<int> overlap = {};
+};
+
+// A frame whose turn it is in a run.
+struct Turn {
+  FrameIndex frame;
+  FrameIndex of;  // the frame whose take it is solved in: itself, or for one before those that the take owns
+                  // the first that it owns
+  bool lead() const { return frame != of; }
+  auto operator<=>(const Turn&) const = default;
 };
 
 struct RunPlan {
   std::vector<std::string> project_steps;  // full ids, in order; once a run
   std::vector<std::string> frame_steps;    // in order; for every frame
-  std::vector<FrameIndex> frames;          // take by take, in order
+  std::vector<std::string> lead_steps;     // of them, those that later frames build on
+  std::vector<Turn> turns;                 // take by take, in order
   std::vector<std::string> notes;          // stages left out, and what they would need
 };
 

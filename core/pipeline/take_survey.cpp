@@ -108,7 +108,22 @@ void TakeSurveyor::readRecords(const Project& project, Pass& pass) {
       record.scores["seconds"] = found->seconds;
       known = records_.insert_or_assign(key, std::move(record)).first;
     }
-    pass.made.emplace(known->second.step, known->second.frame);
+    if (!leads_.contains(key)) pass.made.emplace(known->second.step, known->second.frame);
+  }
+}
+
+void TakeSurveyor::keepLeadKeys(const Project& project) {
+  leads_.clear();
+  for (const Take& take : project.takes()) {
+    for (FrameIndex f = take.first; f < take.begin(); f.value += take.step) {
+      for (const StageInfo& info : project.setup().stages.infos()) {
+        if (!project.blockedReason(info.id).empty()) continue;
+        for (const StepInfo& step : info.steps) {
+          if (step.per_frame && applies(step, take, f))
+            leads_.insert(project.key(info.id + "." + step.id, take, f));
+        }
+      }
+    }
   }
 }
 
@@ -117,6 +132,7 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
   if (now != known_for_) {
     keys_.clear();
     project.forgetKeys();
+    keepLeadKeys(project);
     known_for_ = now;
   }
   const fs::path results = project.store().folderOf({}).parent_path();

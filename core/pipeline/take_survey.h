@@ -66,9 +66,11 @@ class TakeSurveyor {
   using Keys = std::vector<std::optional<Digest>>;  // none: the step is not for the frame
   const Keys& keysOf(const Project& project, const std::string& step, bool per_frame);
   void readRecords(const Project& project, Pass& pass);
+  void keepLeadKeys(const Project& project);
 
   std::string known_for_;             // project and settings that keys_ belong to
   std::map<std::string, Keys> keys_;  // by step; one a frame, or a single one
+  std::set<Digest> leads_;            // keys of frames as members of takes that do not own them
   std::map<Digest, Record> records_;
 };
 

@@ -14,16 +14,17 @@ Take normal(Take take) {
   return take;
 }
 
+// What `inner` claims `outer` does, too.
 bool covers(const Take& outer, const Take& inner) {
-  if (!outer.holds(inner.first) || !outer.holds(inner.last)) return false;
-  return inner.count() == 1 || inner.step % outer.step == 0;
+  if (!outer.claims(inner.begin()) || !outer.claims(inner.last)) return false;
+  return inner.begin() == inner.last || inner.step % outer.step == 0;
 }
 
 // By frame: the position of its owner, -1: none.
 std::vector<int> ownersOf(const std::vector<Take>& takes, int frames) {
   std::vector<int> owners(static_cast<std::size_t>(frames), -1);
   for (std::size_t t = 0; t < takes.size(); ++t) {
-    for (const FrameIndex f : takes[t].frames())
+    for (const FrameIndex f : takes[t].claimed())
       owners[static_cast<std::size_t>(f.value)] = static_cast<int>(t);
   }
   return owners;
@@ -52,19 +53,20 @@ std::vector<Take> segmentsOf(const std::vector<Take>& takes, int frames) {
 }
 
 // Takes for the unowned frames from `begin` to before `end`; `before`: the take that ends there, or null.
-void fillGap(std::vector<Take>& takes, int before, int begin, int end, int segment_frames) {
+void fillGap(std::vector<Take>& takes, int before, int begin, int end, int segment_frames, int overlap) {
   const auto room = [&](int length) {
     return segment_frames == 0 ? end - begin : std::clamp(segment_frames - length, 0, end - begin);
   };
   if (before >= 0) {
     Take& take = takes[static_cast<std::size_t>(before)];
-    const int grown = room(take.count());
+    const int grown = room(take.count() - take.lead);
     take.last.value += grown;
     begin += grown;
   }
   while (begin < end) {
     const int length = room(0);
-    if (length > 1) takes.push_back({{begin}, {begin + length - 1}, 1});
+    const Take segment = withLead({{begin}, {begin + length - 1}}, overlap);
+    if (segment.count() > 1) takes.push_back(segment);
     begin += length;
   }
 }
@@ -73,6 +75,12 @@ void fillGap(std::vector<Take>& takes, int before, int begin, int end, int segme
 
 bool Take::holds(FrameIndex frame) const {
   return frame.value >= first.value && frame.value <= last.value && (frame.value - first.value) % step == 0;
+}
+
+std::vector<FrameIndex> Take::claimed() const {
+  std::vector<FrameIndex> all = frames();
+  all.erase(all.begin(), all.begin() + lead);
+  return all;
 }
 
 std::optional<FrameIndex> Take::before(FrameIndex frame) const {
@@ -93,7 +101,8 @@ std::vector<Take> readTakes(const std::vector<SavedTake>& saved, const std::vect
   for (const SavedTake& take : saved) {
     const auto first = at.find(take.first), last = at.find(take.last);
     if (first == at.end() || last == at.end() || last->second < first->second || take.step < 1) continue;
-    takes.push_back(normal({{first->second}, {last->second}, take.step}));
+    const Take read = normal({{first->second}, {last->second}, take.step, take.lead});
+    if (read.lead >= 0 && read.lead < read.count()) takes.push_back(read);
   }
   return takes;
 }
@@ -102,13 +111,13 @@ std::vector<SavedTake> saveTakes(const std::vector<Take>& takes, const std::vect
   const auto name = [&](FrameIndex f) { return frames.at(static_cast<std::size_t>(f.value)); };
   std::vector<SavedTake> saved;
   saved.reserve(takes.size());
-  for (const Take& take : takes) saved.push_back({name(take.first), name(take.last), take.step});
+  for (const Take& take : takes) saved.push_back({name(take.first), name(take.last), take.step, take.lead});
   return saved;
 }
 
 Take takeOf(const std::vector<Take>& takes, FrameIndex frame) {
   const auto owner =
-      std::find_if(takes.rbegin(), takes.rend(), [&](const Take& t) { return t.holds(frame); });
+      std::find_if(takes.rbegin(), takes.rend(), [&](const Take& t) { return t.claims(frame); });
   return owner == takes.rend() ? Take{frame, frame, 1} : *owner;
 }
 
@@ -133,36 +142,48 @@ std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every
   return takes;
 }
 
+Take withLead(Take take, int overlap) {
+  if (take.step != 1) return take;
+  take.lead = std::min(overlap, take.first.value);
+  take.first.value -= take.lead;
+  return take;
+}
+
 std::vector<Take> addTake(std::vector<Take> takes, const Take& wanted) {
   const Take take = normal(wanted);
-  const std::vector<FrameIndex> members = take.frames();
-  if (std::all_of(members.begin(), members.end(), [&](FrameIndex f) { return takeOf(takes, f) == take; }))
+  const std::vector<FrameIndex> claimed = take.claimed();
+  if (std::all_of(claimed.begin(), claimed.end(), [&](FrameIndex f) { return takeOf(takes, f) == take; }))
     return takes;
   std::erase_if(takes, [&](const Take& older) { return covers(take, older); });
   takes.push_back(take);
   return takes;
 }
 
-std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_frames) {
+std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_frames, int overlap) {
   takes = segmentsOf(takes, frames);
   const std::vector<int> owners = ownersOf(takes, frames);
   for (int begin = 0; begin < frames; ++begin) {
     if (owners[static_cast<std::size_t>(begin)] >= 0) continue;
     int end = begin;
     while (end < frames && owners[static_cast<std::size_t>(end)] < 0) ++end;
-    fillGap(takes, begin > 0 ? owners[static_cast<std::size_t>(begin) - 1] : -1, begin, end, segment_frames);
+    const int before = begin > 0 ? owners[static_cast<std::size_t>(begin) - 1] : -1;
+    fillGap(takes, before, begin, end, segment_frames, overlap);
     begin = end;
   }
   return takes;
 }
 
-std::vector<Take> splitTake(std::vector<Take> takes, FrameIndex frame) {
-  const auto owner =
-      std::find_if(takes.rbegin(), takes.rend(), [&](const Take& t) { return t.holds(frame); });
-  if (owner == takes.rend() || owner->first == frame) return takes;
+std::vector<Take> splitTake(std::vector<Take> takes, const Take& take, FrameIndex frame) {
+  const auto owner = std::find_if(takes.rbegin(), takes.rend(), [&](const Take& t) { return t == take; });
+  if (owner == takes.rend() || !take.holds(frame) || frame == take.first) return takes;
   const auto at = owner.base() - 1;
-  const Take rest = normal({frame, at->last, at->step});
-  *at = normal({at->first, *at->before(frame), at->step});
+  const int members = (frame.value - take.first.value) / take.step;
+  const Take rest = normal({frame, take.last, take.step, std::max(take.lead - members, 0)});
+  if (frame <= take.begin()) {
+    *at = rest;
+    return takes;
+  }
+  *at = normal({take.first, *take.before(frame), take.step, take.lead});
   takes.insert(at + 1, rest);
   return takes;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes: stretches of frames of which each builds on the frame before. A project keeps a list of them; where
-// two hold the same frame, the later one in the list owns it. A frame in no take is a take of its own.
+// two claim the same frame, the later one in the list owns it. A frame in no take is a take of its own.
 #pragma once
 
 #include <optional>
@@ -15,19 +15,26 @@ namespace beam {
 struct Take {
   FrameIndex first, last;
   int step = 1;
+  // That many members at its head are there to build on and are frames of other takes: the overlap with the
+  // segment before, so that no segment begins with a frame that was fitted alone.
+  int lead = 0;
 
   bool holds(FrameIndex frame) const;
+  bool claims(FrameIndex frame) const { return holds(frame) && frame >= begin(); }
   int count() const { return (last.value - first.value) / step + 1; }
+  // The first frame it claims.
+  FrameIndex begin() const { return {first.value + lead * step}; }
   // The frame that a member builds on; none for the first.
   std::optional<FrameIndex> before(FrameIndex frame) const;
   std::vector<FrameIndex> frames() const;
+  std::vector<FrameIndex> claimed() const;
   bool operator==(const Take&) const = default;
 };
 
 // As project.json keeps it: by the capture's own frame names.
 struct SavedTake {
   std::string first, last;
-  int step = 1;
+  int step = 1, lead = 0;
   bool operator==(const SavedTake&) const = default;
 };
 
@@ -50,13 +57,16 @@ std::optional<Between> betweenOf(const std::vector<Take>& takes, FrameIndex fram
 // What a run that names frames asks for: each run of consecutive ones, of which every `every`-th is taken.
 // `frames` ascend.
 std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every);
-// The list with `wanted` as the owner of all its frames; earlier takes that it covers wholly are gone.
+// Consecutive takes with a lead of `overlap` frames, as far as there are so many before; takes with strides
+// and lone frames without.
+Take withLead(Take take, int overlap);
+// The list with `wanted` as the owner of all it claims; earlier takes that it covers wholly are gone.
 std::vector<Take> addTake(std::vector<Take> takes, const Take& wanted);
 // The list of a run over all `frames` frames. Takes of one frame, with strides and inside of others are gone;
-// frames in no take lengthen the take before them or make takes of their own, which get no longer than
-// `segment_frames` (0: as long as they can).
-std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_frames);
-// The list in which `frame` is the first of its take; what stands before it in its take stays a take.
-std::vector<Take> splitTake(std::vector<Take> takes, FrameIndex frame);
+// frames in no take lengthen the take before them or make takes of their own, which claim no more than
+// `segment_frames` (0: as many as they can) and have a lead of `overlap`.
+std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_frames, int overlap);
+// The list in which `frame` begins anew what was `take`; what that claims before it stays a take.
+std::vector<Take> splitTake(std::vector<Take> takes, const Take& take, FrameIndex frame);
 
 }  // namespace beam

@@ -23,6 +23,7 @@ struct TrackOptions {
   TrackJointsOptions joints;
   double restart_ratio = 4;  // ours (methods 3.8: off in the paper's code)
   int segment_frames = 50;   // reliability 3.5
+  int overlap = 2;           // ours
 };
 
 void describe(Fields& f, TrackOptions& o) {
@@ -41,6 +42,14 @@ void describe(Fields& f, TrackOptions& o) {
            .max = 1e6,
            .effect = Effect::SpeedOnly},
           o.segment_frames);
+  f.field({.name = "overlap",
+           .label = "Overlap of segments",
+           .help = "Frames that a segment solves before its first, so that it does not begin with a frame "
+                   "fitted alone, which holds less detail; 0: segments begin on their own.",
+           .min = 0,
+           .max = 100,
+           .effect = Effect::SpeedOnly},
+          o.overlap);
 }
 
 class TrackStage final : public StageOf<TrackOptions> {

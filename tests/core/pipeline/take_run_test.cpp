@@ -87,7 +87,7 @@ TEST_F(TakeRun, AReadOnlyProjectKeepsTakesInMemory) {
   arrangeTakes(p, {});
   EXPECT_THAT(p.takes(), ElementsAre(Take{{0}, {5}, 1}));
   p.readTakesAgain();
-  p.splitTake({4});
+  p.splitTake({{0}, {5}, 1}, {4});
   EXPECT_THAT(p.takes(), ElementsAre(Take{{0}, {3}, 1}, Take{{4}, {5}, 1}));
   std::filesystem::permissions(p.folder(), std::filesystem::perms(0755));
   EXPECT_EQ(everythingIn(p.folder()), before);
@@ -112,7 +112,7 @@ TEST_F(TakeRun, FramesComeTakeByTake) {
   Project p = house_.newProject();
   p.changeTakes([](const auto&) { return std::vector<Take>{{{0}, {4}, 2}, {{1}, {3}, 2}}; });
   std::vector<int> order;
-  for (const FrameIndex frame : makeRunPlan(p, {}).frames) order.push_back(frame.value);
+  for (const Turn& turn : makeRunPlan(p, {}).turns) order.push_back(turn.frame.value);
   EXPECT_THAT(order, ElementsAre(0, 2, 4, 1, 3, 5));
 }
 
@@ -231,6 +231,43 @@ TEST_F(TakeRun, ALaterFrameWaitsForTheFrameBeforeThatAnotherProcessIsAt) {
   EXPECT_EQ(refined_before, 1) << "only the frame before the busy one; poses do not wait";
   EXPECT_EQ(house_.hooks.computed["surface.refine"], 6);
   EXPECT_EQ(house_.hooks.computed["surface.fit"], 1);
+}
+
+TEST_F(TakeRun, ASegmentSolvesItsLeadForItselfAlone) {
+  house_.newProject();
+  RunRequest request = framesOf({3, 4, 5});
+  request.overlap = 2;
+  EXPECT_EQ(countsOf(request), (Counts{{"capture.import", 1},
+                                       {"track.pose", 5},
+                                       {"surface.fit", 1},
+                                       {"surface.refine", 5},
+                                       {"materials.bake", 3}}))
+      << "nothing builds on what is baked";
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"001", "005", 1, 2}));
+  EXPECT_EQ(house_.open().state("surface.refine", {2}), StepState::Pending);
+  EXPECT_EQ(house_.open().state("surface.refine", {3}), StepState::Done);
+  EXPECT_FALSE(house_.open().applies("surface.fit", {3})) << "it is a later frame";
+
+  const Digest seam = house_.open().key("surface.refine", {3});
+  EXPECT_EQ(countsOf({}),
+            (Counts{{"track.pose", 3}, {"surface.refine", 3}, {"surface.fit", 1}, {"materials.bake", 3}}))
+      << "the frames before make a take of their own";
+  EXPECT_EQ(house_.open().key("surface.refine", {3}), seam);
+  EXPECT_EQ(countsOf({}), Counts{});
+}
+
+TEST_F(TakeRun, AFailedLeadShortensIt) {
+  house_.newProject();
+  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
+    if (step == "surface.refine" && c.frame.value == 1) throw Error(Error::Kind::Data, "too dark");
+  };
+  RunRequest request = framesOf({3, 4, 5});
+  request.overlap = 2;
+  const JobFinished finished = house_.finish(house_.open(), request);
+  ASSERT_EQ(finished.failed.size(), 1u);
+  EXPECT_TRUE(finished.failed.front().ref.lead);
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"002", "005", 1, 1}));
+  EXPECT_EQ(house_.hooks.computed.at("materials.bake"), 3);
 }
 
 TEST_F(TakeRun, TwoRunnersShareATakeWithoutDoingAnythingTwice) {

@@ -113,6 +113,20 @@ TEST(TakeSurvey, TellsFramesThatAStageIsNotForAndFollowsTheTakes) {
               ElementsAre(CellState::Done, CellState::Stale, CellState::Empty));
 }
 
+TEST(TakeSurvey, AFrameSolvedAsALeadHasNothingOfItsOwn) {
+  FakeHouse house(fakeStagesWithTakes());
+  house.frame_names = {"0", "1", "2", "3"};
+  Project project = house.newProject();
+  RunRequest last_two;
+  last_two.frames = {FrameIndex{2}, FrameIndex{3}};
+  last_two.overlap = 2;
+  house.finish(project, last_two);
+  project.readTakesAgain();
+  EXPECT_THAT(laneOf(TakeSurveyor().survey(project), "surface").cells,
+              ElementsAre(CellState::Done, CellState::Empty, CellState::Done, CellState::Done))
+      << "the first of them is what it would be alone";
+}
+
 TEST(TakeSurvey, BlockedLanesSayWhatTheyNeed) {
   FakeHouse house;
   house.has_panorama = false;
