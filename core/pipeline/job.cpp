@@ -2,7 +2,6 @@
 #include "core/pipeline/job.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <deque>
@@ -11,18 +10,13 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/pipeline/version.h"
 #include "core/render/device.h"
 
 namespace beam {
 namespace {
-
-std::uint64_t peakMemoryBytes() {
-  struct rusage usage {};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
 
 bool readsPictures(const StepInfo& step) {
   return std::find(step.reads.begin(), step.reads.end(), Reads::Pictures) != step.reads.end();
@@ -281,6 +275,7 @@ void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const D
     checkInputs(ref, ingredients);
   });
   project_.store().clearFailure(key);
+  returnFreeMemory();
   const double seconds = secondsSince(step_started_);
   logInfo("{}{} done in {:.1f} s", ref.step, ref.frame ? ", frame " + ref.frame_name : std::string(),
           seconds);

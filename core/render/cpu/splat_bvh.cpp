@@ -56,7 +56,8 @@ std::unique_ptr<Tracer> makeFollowingTracer(const TracerDesc& desc, const Gaussi
                                             std::shared_ptr<const SplatBvh>& last) {
   const std::vector<RaySplat> splats = raySplats(desc, cloud);
   std::shared_ptr<const SplatBvh> tree = moved(last.get(), splats);
-  last = tree ? tree : build(splats);
+  last = std::move(tree);
+  if (!last) last = build(splats);
   return std::make_unique<SplatBvhTracer>(desc, last);
 }
 
