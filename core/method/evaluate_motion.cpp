@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/math/knn.h"
@@ -13,6 +14,7 @@ namespace {
 constexpr double kTrackedShare = 0.25;
 constexpr std::size_t kFewestPoints = 50;
 constexpr float kOpaque = 0.5f;
+constexpr std::size_t kPatch = 13;  // true points around one, itself among them
 
 // The smallest turn from unit a to unit b; half a turn about any axis where they are opposite.
 dmat3 turnBetween(const dvec3& a, const dvec3& b) {
@@ -25,6 +27,39 @@ dmat3 turnBetween(const dvec3& a, const dvec3& b) {
   }
   const dmat3 k(0, axis.z, -axis.y, -axis.z, 0, axis.x, axis.y, -axis.x, 0);
   return dmat3(1.0) + k + k * k / (1 + cosine);
+}
+
+// The turn about unit `axis` that brings the first of each pair nearest to the second: Procrustes in the
+// plane across it.
+dmat3 twistBetween(const dvec3& axis, std::span<const std::pair<dvec3, dvec3>> pairs) {
+  double sine = 0, cosine = 0;
+  for (const auto& [from, to] : pairs) {
+    sine += glm::dot(axis, glm::cross(from, to));
+    cosine += glm::dot(from, to) - glm::dot(axis, from) * glm::dot(axis, to);
+  }
+  const double length = std::hypot(sine, cosine);
+  if (length == 0) return dmat3(1.0);
+  const dmat3 k(0, axis.z, -axis.y, -axis.z, 0, axis.x, axis.y, -axis.x, 0);
+  return dmat3(1.0) + sine / length * k + (1 - cosine / length) * k * k;
+}
+
+// How the skin around each true point turned.
+std::vector<dmat3> turnsOf(const TrueSkin& first, const TrueSkin& now) {
+  const KdTree tree(first.position_m);
+  std::vector<dmat3> turns(first.position_m.size());
+  parallelFor(turns.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const dvec3 normal(now.normal[p]);
+      const dmat3 tilt = turnBetween(dvec3(first.normal[p]), normal);
+      std::vector<std::pair<dvec3, dvec3>> pairs;
+      for (const Neighbor& k : tree.nearest(first.position_m[p], kPatch)) {
+        const dvec3 from = dvec3(first.position_m[k.index]) - dvec3(first.position_m[p]);
+        pairs.emplace_back(tilt * from, dvec3(now.position_m[k.index]) - dvec3(now.position_m[p]));
+      }
+      turns[p] = twistBetween(normal, pairs) * tilt;
+    }
+  });
+  return turns;
 }
 
 std::optional<std::size_t> pixelOf(const Camera& camera, const dvec3& in_camera) {
@@ -90,13 +125,13 @@ std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrueS
 
 Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrueSkin& first_truth,
                 const TrueSkin& truth, std::span<const std::uint32_t> nearest) {
+  const std::vector<dmat3> turns = turnsOf(first_truth, truth);
   std::vector<double> distances;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     const std::uint32_t p = nearest[i];
     if (p == kNoPoint) continue;
-    const dmat3 turn = turnBetween(dvec3(first_truth.normal[p]), dvec3(truth.normal[p]));
     const dvec3 offset = dvec3(first.position_m[i]) - dvec3(first_truth.position_m[p]);
-    const dvec3 expected = dvec3(truth.position_m[p]) + turn * offset;
+    const dvec3 expected = dvec3(truth.position_m[p]) + turns[p] * offset;
     distances.push_back(1000 * glm::length(dvec3(now.position_m[i]) - expected));
   }
   return spreadOf(std::move(distances));

@@ -32,9 +32,9 @@ std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrueS
                                          double most_m = 0.03);
 
 // Millimetres |x_t - (p_t + R (x_0 - p_0))| over the Gaussians with a point: x Gaussian, p its true point, R
-// the smallest turn that takes the point's normal of the first frame to that of frame t. R leaves the twist
-// about the normal out, which is the true offset's tangential part (at most the spacing of the points) times
-// the twist.
+// how the skin around it turned: it takes the point's normal of the first frame to that of frame t and fits
+// the 12 true points nearest in the first frame best. (A turn of the normal alone leaves the twist about it
+// open: after half a turn of the body that is as much as the spacing of the points.)
 Spread drift_mm(const GaussianCloud& first, const GaussianCloud& now, const TrueSkin& first_truth,
                 const TrueSkin& truth, std::span<const std::uint32_t> nearest);
 

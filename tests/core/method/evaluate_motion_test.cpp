@@ -55,6 +55,20 @@ TEST(Drift, IsZeroForExactTracks) {
   EXPECT_NEAR(s.p95, 0, 1e-3);
 }
 
+TEST(Drift, FollowsATwistThatNormalsDoNotShow) {
+  const TrueSkin first = sphere(), now = moved(first, glm::angleAxis(3.0f, vec3(0, 0, 1)), vec3(0));
+  GaussianCloud cloud = skinOn(first), later = skinOn(now);
+  const quat turn = glm::angleAxis(3.0f, vec3(0, 0, 1));
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const vec3 aside = 0.006f * glm::normalize(glm::cross(first.normal[i], vec3(0.3f, 0.5f, 0.8f)));
+    cloud.position_m[i] += aside;
+    later.position_m[i] += turn * aside;
+  }
+  std::vector<std::uint32_t> own(cloud.size());
+  for (std::uint32_t i = 0; i < own.size(); ++i) own[i] = i;
+  EXPECT_NEAR(drift_mm(cloud, later, first, now, own).p95, 0, 0.02);
+}
+
 TEST(Drift, IsTheWayThatASlippedGaussianIsOff) {
   const TrueSkin first = sphere(), now = moved(first, kTurn, kShift);
   GaussianCloud slipped = skinOn(now);
