@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/method/track_joints.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/method/fit_surface.h"
 #include "core/method/joint_warp.h"
 #include "core/method/training_views.h"
@@ -18,6 +22,7 @@ namespace beam {
 namespace {
 
 constexpr int kFewestNodes = 64;       // of a coarse level
+constexpr int kSmallestSide = 4;       // of its pictures, pixels
 constexpr float kRecolorRate = 0.01f;  // of SH band 0
 constexpr int kVelocityRounds = 8;
 constexpr int kSmoothRounds = 30;    // a standard deviation of about four spacings
@@ -50,19 +55,32 @@ Pose chosen(const Pose& pose, std::span<const std::uint32_t> indices) {
   return out;
 }
 
+std::vector<FrameView> shrunkAll(std::span<const FrameView> views, int factor) {
+  std::vector<FrameView> small(views.size());
+  parallelFor(views.size(), 1, [&](std::size_t v, std::size_t) { small[v] = shrunk(views[v], factor); });
+  return small;
+}
+
+// Levels whose pictures are large enough to tell anything.
+int levelsOf(std::span<const FrameView> views, int wanted) {
+  int side = std::numeric_limits<int>::max();
+  for (const FrameView& v : views) side = std::min({side, v.camera.width, v.camera.height});
+  while (wanted > 0 && (side >> wanted) < kSmallestSide) --wanted;
+  return wanted;
+}
+
 // The joints drawn at one level, on its pictures.
 class LevelView {
  public:
   LevelView(std::span<const FrameView> views, int level, const GaussianCloud& joints, double mask_weight,
             ComputeDevice& device)
       : ops_(device.newTrainingOps()), mask_weight_(mask_weight) {
-    std::vector<FrameView> small;
-    for (const FrameView& v : views) small.push_back(shrunk(v, 1 << level));
-    views_ = cropToMasks(small);
+    views_ = level > 0 ? cropToMasks(shrunkAll(views, 1 << level)) : cropToMasks(views);
     std::vector<Camera> cameras;
     for (const TrainingView& v : views_) cameras.push_back(v.camera);
     GaussianModel model(joints);
-    model.updateFilter(cameras, 1);
+    // That of full pictures is in the joints already (fitFirstJoints).
+    if (level > 0) model.updateFilter(cameras, 1);
     model.activate();
     drawn_ = model.physical();
     const RasterDesc desc{.width = cameras[0].width, .height = cameras[0].height, .gradients = true};
@@ -91,9 +109,12 @@ class LevelView {
   }
 
   // Mean over all views on black.
-  double lossOfAll(const Pose& pose) {
+  double lossOfAll(const Pose& pose, const Progress& progress) {
     double sum = 0;
-    for (std::size_t v = 0; v < size(); ++v) sum += loss(pose, v, vec3(0), nullptr);
+    for (std::size_t v = 0; v < size(); ++v) {
+      progress.check();
+      sum += loss(pose, v, vec3(0), nullptr);
+    }
     return sum / static_cast<double>(size());
   }
 
@@ -118,25 +139,32 @@ class JointTracker {
         device_(device),
         graph_(surfaceGraph(history.rest.position_m, options.rigid_spacings)),
         previous_(poseOf(history.previous)),
-        pose_(previous_) {
-    const std::size_t coarse = nodesOf(options.levels > 0 ? 1 : 0);
-    if (options.levels > 0) order_ = spreadOrder(history.rest.position_m, coarse);
+        pose_(previous_),
+        levels_(levelsOf(views, options.levels)) {
+    const std::size_t count = history.previous.size();
+    if (history.rest.size() != count || (!history.before_m.empty() && history.before_m.size() != count)) {
+      throw Error(Error::Kind::Bug,
+                  fmt::format("expected {} joints at rest and in the frames before, found {} and {}", count,
+                              history.rest.size(), history.before_m.size()));
+    }
+    if (levels_ > 0) order_ = spreadOrder(history.rest.position_m, nodesOf(1));
   }
 
   TrackedJoints run(Progress& progress, const CloudPreview& preview) {
-    progress.expect(options_.iterations);
+    progress.expect(options_.iterations + options_.recolor_iterations);
     TrackedJoints result;
-    for (int level = options_.levels; level >= 0; --level) {
+    for (int level = levels_; level >= 0; --level) {
+      progress.check();
       LevelView view(views_, level, history_.previous, options_.mask_weight, device_);
-      if (level == options_.levels) predict(view);
+      if (level == levels_) predict(view, progress);
       const double rigid = level > 0 ? moveNodes(level, view, progress) : moveJoints(view, progress);
       if (preview) preview(std::make_shared<GaussianCloud>(posed()));
       if (level > 0) continue;
-      result.residual = view.lossOfAll(pose_);
+      result.residual = view.lossOfAll(pose_, progress);
       result.rigid = rigid;
     }
     result.joints = posed();
-    if (options_.recolor_iterations > 0) recolor(result.joints);
+    if (options_.recolor_iterations > 0) recolor(result.joints, progress);
     return result;
   }
 
@@ -147,8 +175,8 @@ class JointTracker {
   }
 
   int stepsOf(int level) const {
-    const int coarse = options_.iterations / (2 * (options_.levels + 1));
-    return level > 0 ? coarse : options_.iterations - coarse * options_.levels;
+    const int coarse = options_.iterations / (2 * (levels_ + 1));
+    return level > 0 ? coarse : options_.iterations - coarse * levels_;
   }
 
   GaussianCloud posed() const {
@@ -157,7 +185,7 @@ class JointTracker {
     return cloud;
   }
 
-  void predict(LevelView& view) {
+  void predict(LevelView& view, const Progress& progress) {
     if (history_.before_m.empty()) return;
     std::vector<vec3> velocity(previous_.size());
     for (std::size_t i = 0; i < velocity.size(); ++i)
@@ -166,7 +194,7 @@ class JointTracker {
     for (int round = 0; round < kVelocityRounds; ++round) velocity = averaged(graph_, velocity);
     Pose predicted = previous_;
     for (std::size_t i = 0; i < predicted.size(); ++i) predicted.position_m[i] += velocity[i];
-    if (view.lossOfAll(predicted) < view.lossOfAll(pose_)) pose_ = std::move(predicted);
+    if (view.lossOfAll(predicted, progress) < view.lossOfAll(pose_, progress)) pose_ = std::move(predicted);
   }
 
   double moveNodes(int level, LevelView& view, Progress& progress) {
@@ -227,12 +255,12 @@ class JointTracker {
 
   // A body that turns is shaded anew, and colours of another shading pull the joints off the skin. Only what
   // changes alike over neighbours is taken on: shading is smooth, and the texture is what holds the joints.
-  void recolor(GaussianCloud& joints) {
+  void recolor(GaussianCloud& joints, Progress& progress) {
     ViewLoss loss(views_, {.ssim_weight = 0, .mask_weight = 0, .seed = options_.seed}, false, device_);
     GaussianModel model(joints);
-    model.updateFilter(loss.cameras(), 1);
     GaussianBuffers gradients;
     for (int step = 0; step < options_.recolor_iterations; ++step) {
+      progress.step();
       model.activate();
       loss.gradient(model.physical(), step, 3, gradients);
       const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step, options_.recolor_iterations));
@@ -268,6 +296,7 @@ class JointTracker {
   Anchors graph_;                     // of the joints
   std::vector<std::uint32_t> order_;  // nodes of the coarse levels
   Pose previous_, pose_;
+  int levels_;
 };
 
 }  // namespace
@@ -293,8 +322,8 @@ TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& 
 }
 
 double jointResidual(std::span<const FrameView> views, const GaussianCloud& joints, double mask_weight,
-                     ComputeDevice& device) {
-  return LevelView(views, 0, joints, mask_weight, device).lossOfAll(poseOf(joints));
+                     ComputeDevice& device, const Progress& progress) {
+  return LevelView(views, 0, joints, mask_weight, device).lossOfAll(poseOf(joints), progress);
 }
 
 void describe(Fields& f, TrackJointsOptions& o) {

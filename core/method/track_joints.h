@@ -61,6 +61,6 @@ TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& 
 
 // `residual` of joints as they stand.
 double jointResidual(std::span<const FrameView> views, const GaussianCloud& joints, double mask_weight,
-                     ComputeDevice& device);
+                     ComputeDevice& device, const Progress& progress);
 
 }  // namespace beam

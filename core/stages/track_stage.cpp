@@ -62,6 +62,7 @@ class TrackStage final : public StageOf<TrackOptions> {
         .steps = {{.id = "joints",
                    .title = "Track joints",
                    .source = "BEAM 3.1, eq. 9",
+                   .version = 2,
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "capture.screen"},
                    .weight = 30,
@@ -76,7 +77,8 @@ class TrackStage final : public StageOf<TrackOptions> {
     if (!c.later()) return start(c, views, false);
     const std::filesystem::path& before = *c.previousResult(kJointsStep);
     const TrackNote note = readTrackNote(before);
-    const TrackedJoints tracked = follow(c, views, before);
+    const GaussianCloud previous = readSplatPly(before / kJointsFile).cloud;
+    const TrackedJoints tracked = follow(c, views, before, previous);
     const double limit = options_.restart_ratio * note.reference_residual;
     if (limit > 0 && tracked.residual > limit) {
       logWarning(
@@ -86,6 +88,9 @@ class TrackStage final : public StageOf<TrackOptions> {
       return start(c, views, true);
     }
     writeSplatPly(c.folder / kJointsFile, tracked.joints, nullptr);
+    writePosePly(c.folder / kRestPoseFile, readPosePly(before / kRestPoseFile));
+    writePosePly(c.folder / kBeforeFile, poseOf(previous));
+    c.scores["motion_p95_m"] = motionOf(previous.position_m, tracked.joints.position_m);
     c.scores["residual"] = tracked.residual;
     c.scores["e_rigid"] = tracked.rigid;
     writeTrackNote(c.folder,
@@ -101,24 +106,20 @@ class TrackStage final : public StageOf<TrackOptions> {
     const GaussianCloud joints = fitFirstJoints(views, seeds, options_.joints, c.device, fitting, c.preview);
     writeSplatPly(c.folder / kJointsFile, joints, nullptr);
     writePosePly(c.folder / kRestPoseFile, poseOf(joints));
-    c.scores["residual"] = jointResidual(views, joints, options_.joints.mask_weight, c.device);
+    c.scores["residual"] = jointResidual(views, joints, options_.joints.mask_weight, c.device, c.progress);
     c.scores["restart"] = again ? 1 : 0;
     c.scores["joints"] = static_cast<double>(joints.size());
     writeTrackNote(c.folder, {again, 0});
   }
 
   TrackedJoints follow(StepContext& c, const std::vector<FrameView>& views,
-                       const std::filesystem::path& before) const {
-    const GaussianCloud previous = readSplatPly(before / kJointsFile).cloud;
+                       const std::filesystem::path& before, const GaussianCloud& previous) const {
     const Pose rest = readPosePly(before / kRestPoseFile);
     std::vector<vec3> earlier;
     if (std::filesystem::exists(before / kBeforeFile)) earlier = readPosePly(before / kBeforeFile).position_m;
-    writePosePly(c.folder / kRestPoseFile, rest);
-    writePosePly(c.folder / kBeforeFile, poseOf(previous));
     TrackedJoints tracked =
         trackJoints(views, {rest, previous, earlier}, options_.joints, c.device, c.progress, c.preview);
     validate(tracked.joints);
-    c.scores["motion_p95_m"] = motionOf(previous.position_m, tracked.joints.position_m);
     return tracked;
   }
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/base/rng.h"
+#include "core/io/file.h"
 #include "core/io/splat_ply.h"
 #include "tests/app/cli_support.h"
 
@@ -93,6 +94,14 @@ TEST_F(TakeRun, StartsAnewWhereTheResidualSaysSo) {
   ASSERT_EQ(said.code, 0) << said.err;
   EXPECT_THAT(said.err, HasSubstr("start anew"));
   EXPECT_EQ(exported("anew.beam").size(), 4u);
+  int restarts = 0;
+  for (const auto& result : fs::directory_iterator(fs::path(at("anew.beam")) / "results")) {
+    const fs::path note = result.path() / "track.json";
+    if (!fs::exists(note) || readTextFile(note).find("\"restarted\": true") == std::string::npos) continue;
+    ++restarts;
+    EXPECT_FALSE(fs::exists(result.path() / "before.ply")) << "new joints have no past";
+  }
+  EXPECT_GT(restarts, 0);
 }
 
 TEST_F(TakeRun, ALoneFrameIsFittedAlone) {

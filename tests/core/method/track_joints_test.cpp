@@ -109,6 +109,17 @@ TEST(TrackJoints, GivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.rigid, two.rigid);
 }
 
+TEST(TrackJoints, AHistoryOfOtherJointsIsRefused) {
+  const SphereCapture s{.cameras = 6};
+  TrackJointsOptions o = quick();
+  o.first_iterations = 20;
+  const auto views = photographsAt(s, s.center);
+  const GaussianCloud first = firstJoints(views, o);
+  const std::vector<vec3> other(first.size() - 1);
+  Progress progress;
+  EXPECT_THROW(trackJoints(views, {poseOf(first), first, other}, o, *makeCpuDevice(), progress), Error);
+}
+
 TEST(TrackJoints, StopsWhenAskedTo) {
   const SphereCapture s{.cameras = 6};
   TrackJointsOptions o = quick();
