@@ -26,6 +26,15 @@ std::string contentText(const FrameSource& source, ViewIndex view, FrameIndex fr
   }
 }
 
+// A picture that cannot be read is left out of its frame (loadFrameViews), whatever the reason.
+std::string fileText(const InputDigests& digests, const std::filesystem::path& file) {
+  try {
+    return digests.file(file).hex();
+  } catch (const Error&) {
+    return "unreadable";
+  }
+}
+
 }  // namespace
 
 std::string calibrationText(const CaptureSet& capture) {
@@ -54,9 +63,11 @@ Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame, Split
   for (std::size_t i = 0; i < capture.views.size(); ++i) {
     const ViewIndex view{static_cast<std::int32_t>(i)};
     if (capture.views[i].split != split || !capture.source->has(view, frame)) continue;
-    text += fmt::format("view {}:{}", capture.views[i].name.size(), capture.views[i].name);
     const std::vector<std::string> names = capture.source->files(view, frame);
-    for (const std::string& name : names) text += fmt::format(" {}", file(name).hex());
+    // Gone since the capture was read: as if it had never been there.
+    if (!names.empty() && !std::filesystem::exists(names.front())) continue;
+    text += fmt::format("view {}:{}", capture.views[i].name.size(), capture.views[i].name);
+    for (const std::string& name : names) text += fmt::format(" {}", fileText(*this, name));
     if (names.empty()) text += fmt::format(" {}", contentText(*capture.source, view, frame));
     text += '\n';
   }

@@ -21,7 +21,8 @@ std::string calibrationText(const CaptureSet& capture);
 class InputDigests {
  public:
   Digest calibration(const CaptureSet& capture) const;
-  // Pictures and masks of the frame's views of `split`.
+  // Pictures and masks of the frame's views of `split`. Never throws for one that is gone or cannot be read:
+  // a run leaves it out, and the state of a project must not hang on it.
   Digest pictures(const CaptureSet& capture, FrameIndex frame, Split split) const;
   Digest file(const std::filesystem::path& path) const;
 

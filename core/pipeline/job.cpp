@@ -148,9 +148,9 @@ Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
   if (stages_told_.emplace(stageOf(step), turn).second) {
     tell_(StageStarted{stageOf(step), now_.frame, now_.frame_name});
   }
-  const std::optional<KeyIngredients> ingredients = ingredientsOf(step, turn);
-  if (!ingredients) return Ended::Severed;
-  const Digest key = keyOf(*ingredients);
+  const KeyIngredients ingredients =
+      project_.ingredients(step, takeAtWork(), turn ? turn->frame : FrameIndex{});
+  const Digest key = keyOf(ingredients);
   weight_now_ = info.weight;
   const auto reuse = [&] {
     weight_total_ -= weight_now_;
@@ -158,7 +158,7 @@ Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
     return Ended::Reused;
   };
   if (project_.store().verified(key)) return reuse();
-  if (const Ended ready = afterPrevious(info, *ingredients, turn.value_or(Turn{})); ready != Ended::Computed)
+  if (const Ended ready = afterPrevious(info, ingredients, turn.value_or(Turn{})); ready != Ended::Computed)
     return ready;
   if (project_.readOnly()) {
     throw Error(
@@ -170,20 +170,8 @@ Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
   const std::optional<FileLock> lease = project_.store().tryLease(key);
   if (!lease) return Ended::Busy;
   if (project_.store().verified(key)) return reuse();  // published between the look and the lease
-  computeWithin(now_, *ingredients, key);
+  computeWithin(now_, ingredients, key);
   return Ended::Computed;
-}
-
-std::optional<KeyIngredients> Job::ingredientsOf(const std::string& step, std::optional<Turn> turn) const {
-  if (!turn) return project_.ingredients(step, FrameIndex{});
-  const Take take = takeOf(*turn);
-  try {
-    return project_.ingredients(step, take, turn->frame);
-  } catch (const Error& e) {
-    // If the file is one of this frame, it fails again as the first of its take, and for good.
-    if (!take.before(turn->frame) || awaitsFrameBefore(*turn) || !spoilsOneFrameOnly(e.kind())) throw;
-    return std::nullopt;
-  }
 }
 
 // Whether this run is still to solve the frame before in the same take.

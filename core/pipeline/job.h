@@ -48,8 +48,6 @@ class Job {
   // Busy: come back later.
   Ended runFrame(const RunPlan& plan, const Turn& turn);
   Ended runStep(const std::string& step, std::optional<Turn> turn);
-  // None: they hang on a file of an earlier frame that cannot be read.
-  std::optional<KeyIngredients> ingredientsOf(const std::string& step, std::optional<Turn> turn) const;
   // Whether a step can begin now; Busy or Severed when what it reads of the frame before is not there.
   Ended afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, const Turn& turn);
   void splitTakeAt(const RunPlan& plan, const Turn& turn);

@@ -167,7 +167,7 @@ void ResultStore::publish(const Digest& key, ResultRecord record, const Build& b
   makeFolder(temporary);
   try {
     record.key = key;
-    build(temporary, record);
+    onDisk([&] { build(temporary, record); });
     onDisk([&] { sealFiles(temporary, record); });
     const fs::path target = folderOf(key);
     if (::rename(temporary.c_str(), target.c_str()) != 0) {
@@ -194,7 +194,9 @@ void ResultStore::removeStale() const {
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(project_ / "results", failed)) {
     const std::string name = entry.path().filename().string();
-    if (name.size() > 38 && name.front() == '.' && name.ends_with(".tmp")) found.push_back(entry.path());
+    const bool ours = name.size() > 38 && name.front() == '.' && name.ends_with(".tmp") &&
+                      name.find_first_not_of("0123456789abcdef", 1) == 33;
+    if (ours) found.push_back(entry.path());
   }
   for (const fs::path& folder : found) {
     // The builder of a folder holds the lease of its key; a lease that can be had has no builder.

@@ -114,6 +114,18 @@ TEST_F(Store, AWholeResultIsNeverOverwritten) {
   EXPECT_EQ(store_.record(key_)->files.at("a.txt").digest, digestOf("first"));
 }
 
+TEST_F(Store, WhatTheDiskRefusesABuilderIsAnErrorOfTheDisk) {
+  try {
+    store_.publish(key_, {}, [](const fs::path& folder, ResultRecord&) {
+      std::ofstream(folder / "a") << "a file";
+      fs::create_directory(folder / "a" / "b");
+    });
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), Error::Kind::Storage);
+  }
+}
+
 TEST_F(Store, ADamagedResultGivesWayToANewOne) {
   publish("first");
   std::ofstream(file("a.txt")) << "fi7st";
@@ -127,9 +139,12 @@ TEST_F(Store, HalfBuiltFoldersOfTheDeadAreRemovedThoseOfTheLivingStay) {
   const Digest live = digestOf("live"), dead = digestOf("dead");
   fs::create_directories(results / ("." + live.hex() + ".123.tmp"));
   fs::create_directories(results / ("." + dead.hex() + ".123.tmp"));
+  const fs::path foreign = results / ("." + std::string(40, 'x') + ".tmp");
+  fs::create_directories(foreign);
   const auto lease = store_.tryLease(live);
   ASSERT_TRUE(lease);
   store_.removeStale();
+  EXPECT_TRUE(fs::exists(foreign)) << "not ours";
   EXPECT_TRUE(fs::exists(results / ("." + live.hex() + ".123.tmp")));
   EXPECT_FALSE(fs::exists(results / ("." + dead.hex() + ".123.tmp")));
 }

@@ -172,29 +172,34 @@ TEST_F(TakeRun, AFailedFrameEndsItsTakeAndTheNextBeginsAnother) {
   EXPECT_EQ(countsOf({}), (Counts{{"surface.refine", 1}, {"materials.bake", 1}})) << "the rest stays";
 }
 
-TEST_F(TakeRun, APictureThatIsGoneSpoilsItsFrameOnly) {
-  class GoneFrames final : public FrameSource {
+TEST_F(TakeRun, APictureThatIsGoneOrUnreadableSpoilsNeitherRunNorState) {
+  class OddFrames final : public FrameSource {
    public:
+    explicit OddFrames(std::string folder) : folder_(std::move(folder)) {}
     bool has(ViewIndex, FrameIndex) const override { return true; }
     std::vector<std::string> files(ViewIndex, FrameIndex frame) const override {
-      return frame.value == 2 ? std::vector<std::string>{"gone.png"} : std::vector<std::string>{};
+      if (frame.value == 2) return {"gone.png"};
+      return frame.value == 4 ? std::vector<std::string>{folder_} : std::vector<std::string>{};
     }
     Image<u8vec3> photo(ViewIndex, FrameIndex frame) const override {
       return Image<u8vec3>(4, 4, u8vec3(static_cast<std::uint8_t>(frame.value)));
     }
     Image<std::uint8_t> mask(ViewIndex, FrameIndex) const override { return {}; }
+
+   private:
+    std::string folder_;
   };
   const auto open = house_.setup->open_capture;
   house_.setup->open_capture = [&](const auto& folder, const auto& options) {
     ImportedCapture imported = open(folder, options);
-    imported.set.source = std::make_shared<GoneFrames>();
+    imported.set.source = std::make_shared<OddFrames>(house_.root().string());
     return imported;
   };
-  const JobFinished finished = house_.finish(house_.newProject());
-  EXPECT_EQ(finished.outcome, JobOutcome::DoneWithFailures);
-  ASSERT_EQ(finished.failed.size(), 1u);
-  EXPECT_EQ(finished.failed.front().ref.frame_name, "002");
-  EXPECT_EQ(house_.hooks.computed.at("materials.bake"), 5);
+  house_.newProject();
+  EXPECT_EQ(house_.open().state("surface.fit", {0}), StepState::Pending);
+  EXPECT_EQ(countsOf({}).at("materials.bake"), 6);
+  EXPECT_EQ(house_.open().state("materials.bake", {2}), StepState::Done);
+  EXPECT_EQ(house_.open().state("materials.bake", {4}), StepState::Done);
 }
 
 TEST_F(TakeRun, AFailureThatTheNextFrameDoesNotNeedSplitsNothing) {
