@@ -99,6 +99,7 @@ class LevelView {
     setPose(drawn_, pose);
     compose(v, background, target_);
     raster_->forward(drawn_, v.camera, 3, background, images_);
+    acceptUnknown(v, images_.color, target_);
     const double l1 = ops_->photometric(images_.color, target_, 0, upstream_.color).total;
     const double mask = maskLoss(images_.alpha, v, mask_weight_, upstream_.alpha);
     if (gradient) {

@@ -69,8 +69,9 @@ std::vector<TrainingView> cropToMasks(std::span<const FrameView> views) {
     const FrameView& v = views[i];
     const int x0 = placed(rects[i].x0, rects[i].x1, width, v.photo.width);
     const int y0 = placed(rects[i].y0, rects[i].y1, height, v.photo.height);
-    TrainingView t{v.camera, cropped(v.photo, x0, y0, width, height), cropped(v.mask, x0, y0, width, height),
-                   isPremultiplied(v)};
+    TrainingView t{
+        v.camera,           cropped(v.photo, x0, y0, width, height), cropped(v.mask, x0, y0, width, height),
+        isPremultiplied(v), std::min(width, v.photo.width - x0),     std::min(height, v.photo.height - y0)};
     t.camera.width = width;
     t.camera.height = height;
     t.camera.intrinsics.cx -= x0;
@@ -93,6 +94,14 @@ void compose(const TrainingView& view, vec3 background, Planes& target) {
   });
 }
 
+void acceptUnknown(const TrainingView& view, const Planes& rendered, Planes& target) {
+  if (view.whole()) return;
+  for (std::size_t i = 0; i < target.planeSize(); ++i) {
+    if (view.knows(i)) continue;
+    for (int c = 0; c < 3; ++c) target.plane(c)[i] = rendered.plane(c)[i];
+  }
+}
+
 double maskLoss(const Planes& alpha, const TrainingView& view, double weight, Planes& gradient) {
   const std::size_t pixels = alpha.planeSize();
   if (gradient.planeSize() != pixels) gradient = Planes(alpha.width, alpha.height, 1);
@@ -103,7 +112,8 @@ double maskLoss(const Planes& alpha, const TrainingView& view, double weight, Pl
   const auto unit = static_cast<float>(weight / static_cast<double>(pixels));
   double sum = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
-    const float difference = alpha.values[i] - view.mask.pixels[i] / 255.0f;
+    const bool known = view.whole() || view.knows(i);
+    const float difference = known ? alpha.values[i] - view.mask.pixels[i] / 255.0f : 0.0f;
     gradient.values[i] = difference > 0 ? unit : difference < 0 ? -unit : 0.0f;
     sum += std::abs(difference);
   }

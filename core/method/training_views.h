@@ -15,6 +15,15 @@ struct TrainingView {
   Image<u8vec3> photo;         // sRGB
   Image<std::uint8_t> mask;    // empty: everything counts
   bool premultiplied = false;  // the photograph is black outside its mask: it already is value x coverage
+  // Of the crop, from its first pixel on, the part that the photograph has; the rest tells nothing.
+  int known_width = 0, known_height = 0;
+
+  bool whole() const { return known_width == photo.width && known_height == photo.height; }
+  bool knows(std::size_t pixel) const {
+    const auto width = static_cast<std::size_t>(photo.width);
+    return pixel % width < static_cast<std::size_t>(known_width) &&
+           pixel / width < static_cast<std::size_t>(known_height);
+  }
 };
 
 // Crops of one common size, a multiple of 16 where the pictures allow it.
@@ -23,6 +32,9 @@ std::vector<TrainingView> cropToMasks(std::span<const FrameView> views);
 // What the view should look like on `background`, sRGB-encoded: p + (1 - a) b for premultiplied photographs,
 // else a p + (1 - a) b. `target` is resized.
 void compose(const TrainingView& view, vec3 background, Planes& target);
+
+// Takes into `target` what was rendered where the photograph tells nothing: no loss, no gradient.
+void acceptUnknown(const TrainingView& view, const Planes& rendered, Planes& target);
 
 // weight * mean |A - mask| over the picture; `gradient` (1 plane, resized) receives its gradient. 0 without a
 // mask.

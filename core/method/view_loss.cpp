@@ -25,6 +25,7 @@ void ViewLoss::gradient(const GaussianBuffers& gaussians, int step, int sh_degre
       view.mask.empty() ? vec3(0) : vec3(random.uniform(0), random.uniform(1), random.uniform(2));
   compose(view, background, target_);
   raster_->forward(gaussians, view.camera, sh_degree, background, images_);
+  acceptUnknown(view, images_.color, target_);
   ops_->photometric(images_.color, target_, static_cast<float>(options_.ssim_weight), upstream_.color);
   maskLoss(images_.alpha, view, options_.mask_weight, upstream_.alpha);
   if (geometry_) {

@@ -48,6 +48,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                   {.id = "fit",
                    .title = "Fit appearance",
                    .source = "BEAM 3.1, eq. 8",
+                   .version = 2,
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "capture.screen", "surface.seed"},
                    .weight = 45,

@@ -87,6 +87,38 @@ TEST(TrainingViews, CropsKeepWhereAPointFallsInThePhotograph) {
   }
 }
 
+template <class T>
+Image<T> leftPart(const Image<T>& in, int width) {
+  Image<T> out(width, in.height, T{}, in.encoding);
+  for (int y = 0; y < in.height; ++y)
+    std::copy_n(&in.pixels[in.index(0, y)], width, &out.pixels[out.index(0, y)]);
+  return out;
+}
+
+TEST(TrainingViews, BeyondTheBorderOfASmallerPictureNothingIsLearned) {
+  auto views = photographs({});
+  const int half = views[0].camera.width / 2;
+  views[0].photo = leftPart(views[0].photo, half);
+  views[0].mask = leftPart(views[0].mask, half);
+  views[0].camera.width = half;
+  const TrainingView cut = cropToMasks(views)[0];
+  ASSERT_LT(cut.known_width, cut.photo.width) << "the subject goes on beyond the border";
+  EXPECT_TRUE(cropToMasks(views)[1].whole());
+  Planes target, rendered(cut.photo.width, cut.photo.height, 3), alpha(cut.photo.width, cut.photo.height, 1);
+  std::fill(rendered.values.begin(), rendered.values.end(), 0.625f);
+  std::fill(alpha.values.begin(), alpha.values.end(), 0.5f);
+  compose(cut, vec3(0.25f), target);
+  const Planes composed = target;
+  acceptUnknown(cut, rendered, target);
+  Planes gradient;
+  maskLoss(alpha, cut, 1, gradient);
+  for (std::size_t i = 0; i < alpha.planeSize(); ++i) {
+    const bool known = static_cast<int>(i % static_cast<std::size_t>(cut.photo.width)) < cut.known_width;
+    EXPECT_EQ(target.plane(1)[i], known ? composed.plane(1)[i] : 0.625f);
+    EXPECT_EQ(gradient.values[i] != 0, known);
+  }
+}
+
 TEST(TrainingViews, ComposeShowsTheBackgroundOutsideTheMaskOnly) {
   const auto views = photographs({});
   const auto crops = cropToMasks(views);
