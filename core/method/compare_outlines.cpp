@@ -49,14 +49,45 @@ Raster rasterOf(const VisualHull& hull, const VisualHull::Cells& cells, int view
   return r;
 }
 
+// Where the subject is on a view's rays, by the least denied places that most views look at; far from them
+// the rays of two views meet too.
+struct DepthRange {
+  double nearest = 0, farthest = -1;  // empty: nobody knows
+};
+
+std::vector<dvec3> subjectOf(const VisualHull::Cells& cells) {
+  int least = VisualHull::kMostDenials, most_seen = 0;
+  for (const VisualHull::Cell& c : cells.cells) least = std::min(least, c.denials);
+  for (const VisualHull::Cell& c : cells.cells) {
+    if (c.denials == least) most_seen = std::max(most_seen, c.seen);
+  }
+  std::vector<dvec3> subject;
+  for (const VisualHull::Cell& c : cells.cells) {
+    if (c.denials == least && 2 * c.seen > most_seen) subject.push_back(c.center);
+  }
+  return subject;
+}
+
+DepthRange rangeOf(const VisualHull& hull, const std::vector<dvec3>& subject, int view) {
+  if (subject.empty()) return {};
+  DepthRange range{hull.depth(view, subject.front()), hull.depth(view, subject.front())};
+  for (const dvec3& x : subject) {
+    const double z = hull.depth(view, x);
+    range = {std::min(range.nearest, z), std::max(range.farthest, z)};
+  }
+  return range;
+}
+
 // What one view's mask says: its contradicted share, and the blame for it by view.
 struct Verdict {
   double contradicted = 0;
   std::vector<double> blame;
 };
 
-Verdict verdictOf(const VisualHull& hull, const VisualHull::Cells& cells, int view, const FrameView& picture,
-                  int views) {
+// What no other view pictures nobody contradicts: one full-length camera among portraits.
+Verdict verdictOf(const VisualHull& hull, const VisualHull::Cells& cells, const std::vector<dvec3>& subject,
+                  int view, const FrameView& picture, int views) {
+  const DepthRange range = rangeOf(hull, subject, view);
   const Raster r = rasterOf(hull, cells, view, picture);
   Verdict v;
   v.blame.assign(static_cast<std::size_t>(views), 0);
@@ -69,7 +100,9 @@ Verdict verdictOf(const VisualHull& hull, const VisualHull::Cells& cells, int vi
       area += inside;
       const std::int32_t index = r.cell[static_cast<std::size_t>(y) * r.width + x];
       const int denials = index == kNoCell ? 0 : cells.cells[static_cast<std::size_t>(index)].denials;
-      if (index != kNoCell && denials == 0) continue;
+      if (inside == 0 || (index != kNoCell && denials == 0)) continue;
+      const dvec2 middle((x + 0.5) * r.block, (y + 0.5) * r.block);
+      if (hull.leavesOtherPictures(view, middle, range.nearest, range.farthest, 2 * cells.half_m)) continue;
       v.contradicted += inside;
       v.blame[static_cast<std::size_t>(view)] += inside / (1 + denials);
       for (int d = 0; d < denials; ++d) {
@@ -97,10 +130,11 @@ std::vector<OutlineFit> compareOutlines(std::span<const FrameView> views, int mo
   const VisualHull hull(views);
   const VisualHull::Cells cells =
       hull.cellsDeniedBy(most_wrong, most_wrong < 2 ? kCellShare : kCoarseShare, progress);
+  const std::vector<dvec3> subject = subjectOf(cells);
   std::vector<Verdict> verdicts(with_mask.size());
   parallelFor(with_mask.size(), 1, [&](std::size_t v, std::size_t) {
     if (progress.stopRequested()) return;
-    verdicts[v] = verdictOf(hull, cells, static_cast<int>(v), views[with_mask[v]], count);
+    verdicts[v] = verdictOf(hull, cells, subject, static_cast<int>(v), views[with_mask[v]], count);
   });
   progress.check();
   for (std::size_t v = 0; v < with_mask.size(); ++v) {

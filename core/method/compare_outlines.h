@@ -13,7 +13,7 @@ namespace beam {
 
 struct OutlineFit {
   // Share of the view's mask that nothing can lie behind: at every place on these rays some other view sees
-  // background.
+  // background; not where the subject's depth is in no other picture.
   double contradicted = 0;
   // Contradictions of all views, in shares of their masks, that are put down to this view: it and the
   // `most_wrong` views at most that deny the least denied place share one evenly; where more deny, it is its.

@@ -84,19 +84,44 @@ std::uint32_t VisualHull::insideCount(int view, const PixelBox& box) const {
   return insideCount(views_[static_cast<std::size_t>(view)], box);
 }
 
+double VisualHull::depth(int view, const dvec3& x_in_world) const {
+  const MaskView& v = views_[static_cast<std::size_t>(view)];
+  return (v.rotation * x_in_world + v.translation).z;
+}
+
+bool VisualHull::pictures(const MaskView& v, const dvec3& x_in_world) {
+  const dvec3 t = v.rotation * x_in_world + v.translation;
+  if (t.z <= kNearest_m) return false;
+  const dvec2 p = project(v.intrinsics, t);
+  return p.x >= 0 && p.y >= 0 && p.x < v.width && p.y < v.height;
+}
+
+bool VisualHull::leavesOtherPictures(int view, const dvec2& pixel, double nearest, double farthest,
+                                     double step) const {
+  const MaskView& own = views_[static_cast<std::size_t>(view)];
+  const dmat3 world_from_camera = glm::transpose(own.rotation);
+  const dvec3 ray = rayOf(own.intrinsics, pixel);
+  for (double z = nearest; z <= farthest; z += step) {
+    const dvec3 x = world_from_camera * (z * ray - own.translation);
+    const bool seen = std::any_of(views_.begin(), views_.end(),
+                                  [&](const MaskView& v) { return &v != &own && pictures(v, x); });
+    if (!seen) return true;
+  }
+  return false;
+}
+
 std::optional<VisualHull::Cell> VisualHull::votedCell(const dvec3& center, double half,
                                                       int most_denials) const {
   Cell cell{center};
-  int seen = 0;
   for (int v = 0; v < static_cast<int>(views_.size()); ++v) {
     const std::optional<PixelBox> box = footprint(v, center, half);
     if (!box) continue;
-    ++seen;
+    ++cell.seen;
     if (insideCount(v, *box) > 0) continue;
     if (cell.denials == most_denials) return std::nullopt;
     cell.deniers[static_cast<std::size_t>(cell.denials++)] = static_cast<std::int16_t>(v);
   }
-  if (seen < 2) return std::nullopt;
+  if (cell.seen < 2) return std::nullopt;
   return cell;
 }
 

@@ -34,6 +34,7 @@ class VisualHull {
   static constexpr int kMostDenials = 3;
   struct Cell {
     dvec3 center;
+    int seen = 0;  // by how many views
     int denials = 0;
     std::array<std::int16_t, kMostDenials> deniers = {};  // the first `denials` are views
   };
@@ -53,6 +54,10 @@ class VisualHull {
   // counts the views with masks.
   std::optional<PixelBox> footprint(int view, const dvec3& center, double half) const;
   std::uint32_t insideCount(int view, const PixelBox& box) const;
+  double depth(int view, const dvec3& x_in_world) const;
+  // Whether one of the places at every `step` of depth on the ray through a pixel position of `view` lies in
+  // no other view's picture.
+  bool leavesOtherPictures(int view, const dvec2& pixel, double nearest, double farthest, double step) const;
 
  private:
   struct MaskView {
@@ -64,6 +69,7 @@ class VisualHull {
     std::vector<std::uint32_t> integral;  // (width + 1) x (height + 1) counts of inside pixels
   };
   enum class Cover { Outside, Inside, Mixed };
+  static bool pictures(const MaskView& v, const dvec3& x_in_world);
   static std::optional<PixelBox> boxOf(const MaskView& v, const dvec3& in_camera, double radius);
   static std::uint32_t insideCount(const MaskView& v, const PixelBox& box);
   int halvings(const dvec3& center, double half, double share) const;

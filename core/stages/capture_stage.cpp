@@ -50,6 +50,7 @@ class CaptureStage final : public StageOf<CaptureOptions> {
                                             .weight = 0.1},
                                            {.id = "screen",
                                             .title = "Look for bad cameras",
+                                            .version = 2,
                                             .reads = {Reads::Pictures},
                                             .inputs = {"capture.import"},
                                             .weight = 0.5}}};

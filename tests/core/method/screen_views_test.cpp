@@ -133,6 +133,35 @@ TEST(ScreenViews, OutlinesOfTwoLateCamerasAreBothFound) {
   for (const ScreenedView& s : found.suspects) EXPECT_TRUE(s.camera == "cam3" || s.camera == "cam8");
 }
 
+// Level cameras around the sphere; all but the first see what is above its centre.
+std::vector<FrameView> portraits() {
+  std::vector<FrameView> views;
+  for (int i = 0; i < 9; ++i) {
+    const double phi = 2 * 3.14159265 * i / 9;
+    const dvec3 from = dvec3(kSphere.center) + dvec3(2 * std::cos(phi), 0, 2 * std::sin(phi));
+    const Camera camera = cameraLookingAt(from, kSphere.center, kSphere.size_px, 1.4 * kSphere.size_px);
+    FrameView v = photographSphere(kSphere, camera, "cam" + std::to_string(i));
+    addStripes(v);
+    if (i > 0) {
+      v.camera.height = v.photo.height = v.mask.height = kSphere.size_px / 2;
+      v.photo.pixels.resize(v.photo.pixels.size() / 2);
+      v.mask.pixels.resize(v.mask.pixels.size() / 2);
+    }
+    views.push_back(std::move(v));
+  }
+  return views;
+}
+
+TEST(ScreenViews, WhatOneCameraAloneSeesIsNotContradicted) {
+  std::vector<FrameView> views = portraits();
+  const Screening found = screened(views);
+  EXPECT_THAT(found.suspects, IsEmpty());
+  EXPECT_LT(found.figures[0].outline, 0.03);  // rays that the others' lower edge cuts
+  views[0] = atAnotherMoment(views[0], 0.1f);
+  ASSERT_EQ(screened(views).suspects.size(), 1u);
+  EXPECT_EQ(screened(views).suspects[0].camera, "cam0");
+}
+
 TEST(ScreenViews, AnEmptyMaskContradictsTheOthers) {
   std::vector<FrameView> views = goodViews();
   std::fill(views[6].mask.pixels.begin(), views[6].mask.pixels.end(), std::uint8_t{0});
