@@ -77,16 +77,20 @@ double meanGradient(const FrameView& v) {
   return n < kFewestSamples ? -1 : sum / n;
 }
 
-double detailOf(const FrameView& view) {
-  if (!view.mask.empty() && !saysSomething(view.mask)) return 0;
-  FrameView v = view;
-  if (v.mask.empty()) v.mask = Image<std::uint8_t>(v.photo.width, v.photo.height, 255);
+double detailInside(const FrameView& v) {
   const auto area =
       std::count_if(v.mask.pixels.begin(), v.mask.pixels.end(), [](std::uint8_t m) { return m >= kInside; });
   const int fine =
       std::max(1, static_cast<int>(std::lround(kFineShare * std::sqrt(static_cast<double>(area)))));
   const double near = meanGradient(shrunk(v, fine)), far = meanGradient(shrunk(v, fine * kCoarser));
   return near < 0 || far < kLeastContrast ? 0 : near / far;
+}
+
+double detailOf(const FrameView& v) {
+  if (v.mask.empty()) {
+    return detailInside({v.name, v.camera, v.photo, Image<std::uint8_t>(v.photo.width, v.photo.height, 255)});
+  }
+  return saysSomething(v.mask) ? detailInside(v) : 0;
 }
 
 class Screener {
@@ -155,7 +159,10 @@ class Screener {
     }
   }
 
-  // The views whose outlines are compared, without the suspects and `tried`.
+  bool isCompared(std::size_t view) const { return !suspect_[view] && !views_[view].mask.empty(); }
+
+  // The views whose outlines are compared, without the suspects and `tried`; their photographs are not
+  // looked at.
   struct Compared {
     std::vector<FrameView> views;
     std::vector<std::size_t> index;
@@ -163,9 +170,8 @@ class Screener {
   Compared comparedWithout(const std::vector<std::size_t>& tried) const {
     Compared c;
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      if (suspect_[i] || views_[i].mask.empty()) continue;
-      if (std::find(tried.begin(), tried.end(), i) != tried.end()) continue;
-      c.views.push_back(views_[i]);
+      if (!isCompared(i) || std::find(tried.begin(), tried.end(), i) != tried.end()) continue;
+      c.views.push_back({views_[i].name, views_[i].camera, {}, views_[i].mask});
       c.index.push_back(i);
     }
     return c;
@@ -193,14 +199,21 @@ class Screener {
     return 2 * few <= all;
   }
 
-  // Nothing: everybody is to blame. Adds to `tried` the one of the most blamed views without which the least
-  // contradiction remains: returned.
-  std::optional<double> tryWorst(int most_wrong, std::vector<std::size_t>& tried) {
+  // By view, the most blamed first; blame is negative.
+  std::vector<std::pair<double, std::size_t>> blameWithout(const std::vector<std::size_t>& tried,
+                                                           int most_wrong) const {
     const Compared c = comparedWithout(tried);
     const std::vector<OutlineFit> fits = compareOutlines(c.views, most_wrong, progress_);
     std::vector<std::pair<double, std::size_t>> blamed;
     for (std::size_t i = 0; i < fits.size(); ++i) blamed.emplace_back(-fits[i].blame, c.index[i]);
     std::sort(blamed.begin(), blamed.end());
+    return blamed;
+  }
+
+  // Nothing: everybody is to blame. Adds to `tried` the one of the most blamed views without which the least
+  // contradiction remains: returned.
+  std::optional<double> tryWorst(int most_wrong, std::vector<std::size_t>& tried) {
+    const std::vector<std::pair<double, std::size_t>> blamed = blameWithout(tried, most_wrong);
     if (tried.empty() && !fewHaveTheBlame(blamed)) return std::nullopt;
     std::size_t best = blamed.front().second;
     double least = 2;
@@ -239,7 +252,9 @@ class Screener {
 
   // A camera of another moment disturbs the others' outlines too, and two of them hide each other's blame.
   void outlines() {
-    if (comparedWithout({}).views.size() <= kFewestKept) return;
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < views_.size(); ++i) compared += isCompared(i);
+    if (compared <= kFewestKept) return;
     const double all = contradictedWithout({});
     if (all < limits_.outline_share) return;
     for (int most_wrong = 1; most_wrong <= kMostWrong; ++most_wrong) {
