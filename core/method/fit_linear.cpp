@@ -14,16 +14,15 @@
 namespace beam {
 namespace {
 
-constexpr std::size_t kMaxEntries = 150'000'000;  // of 8 bytes: 1.2 GB of blend weights
-constexpr std::size_t kViewsTogether = 16;        // whose back-projections are held at a time
-constexpr float kSlopeFloor = 0.01f;              // linear; below it the eye's slope would drown the rest
-constexpr float kSeen = 0.05f;                    // sum of blend weights (pixels) that makes a Gaussian seen
-constexpr float kPrior = 1e-4f;                   // pull towards the first guess, of what the pictures say
-constexpr float kPriorPixels = 0.003f;            // and at least as much as this many pixels would say
-constexpr float kLeanPixels = 1;                  // evidence of the frame before that no Gaussian is without
-constexpr int kNeighbors = 4;                     // seen Gaussians that lend their colour to an unseen one
-constexpr double kConverged = 1e-10;              // of the squared residual
-constexpr std::size_t kGrain = 2048;              // Gaussians a piece
+constexpr std::size_t kViewsTogether = 16;  // whose back-projections are held at a time
+constexpr float kSlopeFloor = 0.01f;        // linear; below it the eye's slope would drown the rest
+constexpr float kSeen = 0.05f;              // sum of blend weights (pixels) that makes a Gaussian seen
+constexpr float kPrior = 1e-4f;             // pull towards the first guess, of what the pictures say
+constexpr float kPriorPixels = 0.003f;      // and at least as much as this many pixels would say
+constexpr float kLeanPixels = 1;            // evidence of the frame before that no Gaussian is without
+constexpr int kNeighbors = 4;               // seen Gaussians that lend their colour to an unseen one
+constexpr double kConverged = 1e-10;        // of the squared residual
+constexpr std::size_t kGrain = 2048;        // Gaussians a piece
 
 // What one view asks for: sum of w_i value_i = target, pixel by pixel, with an importance for each channel.
 struct ViewEquations {
@@ -53,6 +52,18 @@ std::pair<vec4, vec4> demand(const MaterialMaps& m, std::size_t i, float alpha) 
 // Every `stride`-th pixel of a lattice without rows or columns of its own; all of them for stride 1.
 bool kept(int x, int y, int stride) { return (x + y * (stride * 5 / 8 | 1)) % stride == 0; }
 
+bool isAskedFor(const MaterialMaps& m, std::size_t i) {
+  return m.base_color_weight.values[i] > 0 || m.ao_weight.values[i] > 0;
+}
+
+std::size_t pixelsAskedFor(std::span<const MaterialMaps> maps) {
+  std::size_t count = 0;
+  for (const MaterialMaps& m : maps) {
+    for (std::size_t i = 0; i < m.ao_weight.planeSize(); ++i) count += isAskedFor(m, i);
+  }
+  return count;
+}
+
 ViewEquations equationsOf(const MaterialMaps& m, const BlendWeights& blend, int stride) {
   ViewEquations e;
   e.eye = vec3(centerOf(m.camera));
@@ -62,7 +73,7 @@ ViewEquations equationsOf(const MaterialMaps& m, const BlendWeights& blend, int 
       const std::size_t i = static_cast<std::size_t>(y) * blend.width + x;
       const std::uint32_t begin = blend.first[i], end = blend.first[i + 1];
       if (begin == end || !kept(x, y, stride)) continue;
-      if (!(m.base_color_weight.values[i] > 0) && !(m.ao_weight.values[i] > 0)) continue;
+      if (!isAskedFor(m, i)) continue;
       float alpha = 0;
       for (std::uint32_t k = begin; k < end; ++k) alpha += blend.weight[k];
       const auto [target, importance] = demand(m, i, alpha);
@@ -76,12 +87,23 @@ ViewEquations equationsOf(const MaterialMaps& m, const BlendWeights& blend, int 
   return e;
 }
 
+// Of a lattice that leaves about `most_entries` in all views, by the pixels of one view.
+int strideFor(const ViewEquations& view, std::size_t pixels, std::size_t most_entries) {
+  const std::size_t expected = view.gaussian.size() * pixels / view.rows();
+  if (expected <= most_entries) return 1;
+  const int stride = static_cast<int>(expected / most_entries + 1);
+  logInfo("material fit: {} million blend weights are too many, 1 pixel in {} is used", expected / 1'000'000,
+          stride);
+  return stride;
+}
+
 std::vector<ViewEquations> collect(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
-                                   ComputeDevice& device, Progress& progress) {
+                                   std::size_t most_entries, ComputeDevice& device, Progress& progress) {
   const GaussianBuffers buffers = toBuffers(cloud);
+  const std::size_t pixels = pixelsAskedFor(maps);
   std::unique_ptr<Rasterizer> rasterizer;
   std::vector<ViewEquations> views;
-  int stride = 1;
+  int stride = 0;  // not known before a view has shown something
   progress.expect(static_cast<std::int64_t>(maps.size()));
   for (const MaterialMaps& m : maps) {
     progress.step();
@@ -90,13 +112,11 @@ std::vector<ViewEquations> collect(std::span<const MaterialMaps> maps, const Gau
       rasterizer = device.newRasterizer(
           {.width = m.camera.width, .height = m.camera.height, .color = false, .geometry = true});
     }
-    ViewEquations e = equationsOf(m, rasterizer->blendWeights(buffers, m.camera), stride);
-    const std::size_t expected = e.gaussian.size() * maps.size();
-    if (views.empty() && expected > kMaxEntries) {
-      stride = static_cast<int>(expected / kMaxEntries + 1);
-      logInfo("material fit: {} million blend weights are too many, 1 pixel in {} is used",
-              expected / 1'000'000, stride);
-      e = equationsOf(m, rasterizer->blendWeights(buffers, m.camera), stride);
+    const BlendWeights blend = rasterizer->blendWeights(buffers, m.camera);
+    ViewEquations e = equationsOf(m, blend, std::max(1, stride));
+    if (stride == 0 && e.rows() > 0) {
+      stride = strideFor(e, pixels, most_entries);
+      if (stride > 1) e = equationsOf(m, blend, stride);
     }
     views.push_back(std::move(e));
   }
@@ -107,8 +127,10 @@ std::vector<ViewEquations> collect(std::span<const MaterialMaps> maps, const Gau
 class NormalEquations {
  public:
   NormalEquations(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, float regularization,
-                  ComputeDevice& device, Progress& progress)
-      : cloud_(cloud), regularization_(regularization), views_(collect(maps, cloud, device, progress)) {
+                  std::size_t most_entries, ComputeDevice& device, Progress& progress)
+      : cloud_(cloud),
+        regularization_(regularization),
+        views_(collect(maps, cloud, most_entries, device, progress)) {
     // Row sums stand for how much the pictures say about a Gaussian; the diagonal preconditions.
     row_sum_.assign(cloud.size(), vec4(0));
     coverage_.assign(cloud.size(), vec4(0));
@@ -401,10 +423,11 @@ void descend(const NormalEquations& a, MaterialCoefficients& x, MaterialCoeffici
 
 MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
                                const MaterialCoefficients* before, const FitMaterialsOptions& options,
-                               ComputeDevice& device, Progress& progress) {
+                               ComputeDevice& device, Progress& progress, std::size_t most_entries) {
   Progress collecting = progress.part(0.3, "collecting blend weights");
   const double regularization = before ? options.later.regularization : options.regularization;
-  NormalEquations equations(maps, cloud, static_cast<float>(regularization), device, collecting);
+  NormalEquations equations(maps, cloud, static_cast<float>(regularization), most_entries, device,
+                            collecting);
   MaterialCoefficients x = before ? *before : equations.firstGuess();
   Progress solving = progress.part(0.7, "solving for materials");
   if (before) {

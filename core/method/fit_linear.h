@@ -15,10 +15,14 @@ namespace beam {
 // that share their matrix's pattern.
 using MaterialCoefficients = std::vector<vec4>;
 
+inline constexpr std::size_t kMostBlendWeights = 150'000'000;  // of 8 bytes: 1.2 GB
+
 // `before`: of the same Gaussians in the frame before, turned with them, or null. The solve starts there and
 // is held to it as options.later says; null: starts from the pictures.
+// Where the views have more than about `most_entries` blend weights, every so manieth pixel is used.
 MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
                                const MaterialCoefficients* before, const FitMaterialsOptions& options,
-                               ComputeDevice& device, Progress& progress);
+                               ComputeDevice& device, Progress& progress,
+                               std::size_t most_entries = kMostBlendWeights);
 
 }  // namespace beam

@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
+#include "core/method/fit_linear.h"
 #include "tests/core/method/material_fit.h"
 
 namespace beam {
@@ -96,6 +97,27 @@ TEST_F(MaterialFit, ByAdamAgreesWithTheLinearSolve) {
   EXPECT_LT(difference(truth, fit(maps, linear)).worst, 2e-3f);
   const Difference d = difference(truth, adam);
   EXPECT_LT(d.rms, 0.01);
+}
+
+TEST_F(MaterialFit, ACameraThatSeesNothingDoesNotLiftTheLimitOnMemory) {
+  Materials truth = blank();
+  const RandomStream random(7);
+  for (std::size_t i = 0; i < truth.base_color.coefficients.size(); ++i)
+    truth.base_color.coefficients[i] = 0.05f * random.normal(i);
+  std::vector<MaterialMaps> maps = mapsOf(truth);
+  const auto solved = [&](std::size_t most_entries) {
+    Progress progress;
+    const FitMaterialsOptions options{.solver = "linear", .linear_iterations = 3};
+    return fitLinear(maps, cloud, nullptr, options, *device, progress, most_entries);
+  };
+  constexpr std::size_t kFew = 50'000;
+  const MaterialCoefficients all = solved(kMostBlendWeights), some = solved(kFew);
+  EXPECT_NE(all, some);
+  MaterialMaps blind = maps.front();
+  for (Planes* p : {&blind.ao_weight, &blind.base_color_weight})
+    std::fill(p->values.begin(), p->values.end(), 0.0f);
+  maps.insert(maps.begin(), blind);
+  EXPECT_EQ(solved(kFew), some);
 }
 
 TEST_F(MaterialFit, NeedsAView) { EXPECT_THROW(fit({}, linear), Error); }
