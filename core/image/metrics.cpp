@@ -10,6 +10,9 @@
 namespace beam {
 namespace {
 
+constexpr int kBorder = 10;  // a window's pixels less one
+constexpr int kBand = 64;    // rows of windows that are in memory at a time
+
 std::array<double, 11> gaussianWindow() {
   std::array<double, 11> k{};
   double sum = 0;
@@ -40,25 +43,6 @@ std::vector<double> blurInside(const std::vector<double>& in, int w, int h) {
   return out;
 }
 
-double ssimOfChannel(const std::vector<double>& a, const std::vector<double>& b, int w, int h) {
-  const auto product = [](const std::vector<double>& p, const std::vector<double>& q) {
-    std::vector<double> r(p.size());
-    for (std::size_t i = 0; i < p.size(); ++i) r[i] = p[i] * q[i];
-    return r;
-  };
-  const std::vector<double> ma = blurInside(a, w, h), mb = blurInside(b, w, h),
-                            aa = blurInside(product(a, a), w, h), bb = blurInside(product(b, b), w, h),
-                            ab = blurInside(product(a, b), w, h);
-  constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
-  double sum = 0;
-  for (std::size_t i = 0; i < ma.size(); ++i) {
-    const double va = aa[i] - ma[i] * ma[i], vb = bb[i] - mb[i] * mb[i], cab = ab[i] - ma[i] * mb[i];
-    sum +=
-        (2 * ma[i] * mb[i] + c1) * (2 * cab + c2) / ((ma[i] * ma[i] + mb[i] * mb[i] + c1) * (va + vb + c2));
-  }
-  return sum / static_cast<double>(ma.size());
-}
-
 std::vector<double> crop(const Planes& p, int channel, PixelRect r) {
   std::vector<double> out;
   out.reserve(static_cast<std::size_t>(r.x1 - r.x0) * (r.y1 - r.y0));
@@ -67,6 +51,26 @@ std::vector<double> crop(const Planes& p, int channel, PixelRect r) {
     out.insert(out.end(), row + r.x0, row + r.x1);
   }
   return out;
+}
+
+// Adds the windows that start in the rows of `r` that have ten more below them, row by row.
+void addSsim(const Planes& p, const Planes& q, int channel, PixelRect r, double& sum) {
+  const std::vector<double> a = crop(p, channel, r), b = crop(q, channel, r);
+  const int w = r.x1 - r.x0, h = r.y1 - r.y0;
+  const auto product = [](const std::vector<double>& u, const std::vector<double>& v) {
+    std::vector<double> out(u.size());
+    for (std::size_t i = 0; i < u.size(); ++i) out[i] = u[i] * v[i];
+    return out;
+  };
+  const std::vector<double> ma = blurInside(a, w, h), mb = blurInside(b, w, h),
+                            aa = blurInside(product(a, a), w, h), bb = blurInside(product(b, b), w, h),
+                            ab = blurInside(product(a, b), w, h);
+  constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
+  for (std::size_t i = 0; i < ma.size(); ++i) {
+    const double va = aa[i] - ma[i] * ma[i], vb = bb[i] - mb[i] * mb[i], cab = ab[i] - ma[i] * mb[i];
+    sum +=
+        (2 * ma[i] * mb[i] + c1) * (2 * cab + c2) / ((ma[i] * ma[i] + mb[i] * mb[i] + c1) * (va + vb + c2));
+  }
 }
 
 }  // namespace
@@ -83,12 +87,19 @@ double psnr(const Planes& a, const Planes& b, PixelRect rect) {
   return mse <= 0 ? 100.0 : std::min(100.0, -10 * std::log10(mse));
 }
 
-double ssim(const Planes& a, const Planes& b, PixelRect rect) {
-  double sum = 0;
+double ssim(const Planes& a, const Planes& b, PixelRect rect, const Progress& progress) {
+  const int rows = rect.y1 - rect.y0 - kBorder;
+  const double windows = static_cast<double>(rows) * (rect.x1 - rect.x0 - kBorder);
+  double mean = 0;
   for (int c = 0; c < a.channels; ++c) {
-    sum += ssimOfChannel(crop(a, c, rect), crop(b, c, rect), rect.x1 - rect.x0, rect.y1 - rect.y0);
+    double sum = 0;
+    for (int y = 0; y < rows && !progress.stopRequested(); y += kBand) {
+      const int end = std::min(rows, y + kBand);
+      addSsim(a, b, c, {rect.x0, rect.y0 + y, rect.x1, rect.y0 + end + kBorder}, sum);
+    }
+    mean += sum / windows;
   }
-  return sum / a.channels;
+  return mean / a.channels;
 }
 
 PixelRect maskBounds(const Image<std::uint8_t>& mask) {

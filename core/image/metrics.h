@@ -3,6 +3,7 @@
 // precision.
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/image/image.h"
 
 namespace beam {
@@ -15,8 +16,9 @@ struct PixelRect {
 double psnr(const Planes& a, const Planes& b, PixelRect rect);
 
 // Wang et al. 2004: 11x11 Gaussian window, sigma 1.5, K = (0.01, 0.03), windows fully inside the rectangle,
-// mean over channels. The rectangle is at least 11 pixels wide and high.
-double ssim(const Planes& a, const Planes& b, PixelRect rect);
+// mean over channels. The rectangle is at least 11 pixels wide and high. Of no meaning when a stop is
+// requested.
+double ssim(const Planes& a, const Planes& b, PixelRect rect, const Progress& progress = Progress());
 
 // Bounding box of mask > 0, grown to at least 11 pixels a side inside the picture (evaluate.py's rule).
 // Throws Error{Data} for an empty mask.

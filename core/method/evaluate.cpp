@@ -88,11 +88,12 @@ double meanDistance_m(const std::vector<vec3>& points, const Mesh& mesh, std::ui
 
 }  // namespace
 
-PictureScore scorePicture(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask) {
+PictureScore scorePicture(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask,
+                          const Progress& progress) {
   const PixelRect box = maskBounds(mask);
   PictureScore s;
   s.psnr = psnr(prediction, truth, box);
-  s.ssim = ssim(prediction, truth, box);
+  s.ssim = ssim(prediction, truth, box, progress);
   double sum = 0;
   std::size_t count = 0;
   for (int c = 0; c < truth.channels; ++c) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "core/base/progress.h"
 #include "core/image/image.h"
 #include "core/scene/mesh.h"
 
@@ -15,8 +16,9 @@ struct PictureScore {
   double psnr = 0, ssim = 0, psnr_mask = 0;
 };
 
-// Values in [0, 1] in the compared space; mask > 127 is inside.
-PictureScore scorePicture(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask);
+// Values in [0, 1] in the compared space; mask > 127 is inside. Of no meaning when a stop is requested.
+PictureScore scorePicture(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask,
+                          const Progress& progress = Progress());
 
 // Mean angle in degrees where mask > 127 and the truth has a normal; a missing prediction counts 90.
 double normalErrorDeg(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask);

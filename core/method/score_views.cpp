@@ -12,6 +12,8 @@
 namespace beam {
 namespace {
 
+constexpr std::size_t kTogether = 8;  // views that are in memory as floats, 24 bytes a pixel
+
 // As it comes back from a PNG.
 float rounded(float v) { return static_cast<float>(byteOf(v)) / 255.0f; }
 
@@ -77,8 +79,9 @@ Image<std::uint8_t> countedPixels(const TrainingView& view) {
   return any ? view.mask : Image<std::uint8_t>(view.photo.width, view.photo.height, 255);
 }
 
-ViewScore scoreOf(const FrameView& whole, const TrainingView& crop, const Planes& photo,
-                  const Planes& render) {
+// Of no meaning when a stop is requested.
+ViewScore scoreOf(const FrameView& whole, const TrainingView& crop, const Planes& photo, const Planes& render,
+                  const Progress& progress) {
   const Image<std::uint8_t> mask = countedPixels(crop);
   const Image<float> photo_luma = lumaOf(photo), render_luma = lumaOf(render);
   const Intrinsics &k = whole.camera.intrinsics, &cut = crop.camera.intrinsics;
@@ -86,7 +89,8 @@ ViewScore scoreOf(const FrameView& whole, const TrainingView& crop, const Planes
             y0 = static_cast<int>(std::lround(k.cy - cut.cy));
   ViewScore s;
   s.camera = whole.name;
-  s.score = scorePicture(render, photo, mask);
+  s.score = scorePicture(render, photo, mask, progress);
+  if (progress.stopRequested()) return s;
   s.photo_luma = meanInside(photo_luma, mask);
   s.render_luma = meanInside(render_luma, mask);
   s.photo_sharpness = sharpnessInside(photo_luma, mask);
@@ -104,18 +108,23 @@ std::vector<ViewScore> scoreViews(std::span<const FrameView> views, bool held_ou
   progress.expect(static_cast<std::int64_t>(views.size()));
   const std::vector<TrainingView> crops = cropToMasks(views);
   GBufferRenderer renderer(device);
-  std::vector<Planes> photos(crops.size()), renders(crops.size());
-  for (std::size_t i = 0; i < crops.size(); ++i) {
-    compose(crops[i], vec3(0), photos[i]);
-    renders[i] = planesOf(renderer.render(cloud, nullptr, crops[i].camera).radiance);
-    progress.step();
-  }
   std::vector<ViewScore> scores(crops.size());
-  parallelFor(crops.size(), 1, [&](std::size_t i, std::size_t) {
-    for (float& v : photos[i].values) v = rounded(v);
-    scores[i] = scoreOf(views[i], crops[i], photos[i], renders[i]);
-    scores[i].held_out = held_out;
-  });
+  std::vector<Planes> photos(std::min(kTogether, crops.size())), renders(photos.size());
+  for (std::size_t first = 0; first < crops.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, crops.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      compose(crops[first + i], vec3(0), photos[i]);
+      renders[i] = planesOf(renderer.render(cloud, nullptr, crops[first + i].camera).radiance);
+      progress.step();
+    }
+    parallelFor(count, 1, [&](std::size_t i, std::size_t) {
+      if (progress.stopRequested()) return;
+      for (float& v : photos[i].values) v = rounded(v);
+      scores[first + i] = scoreOf(views[first + i], crops[first + i], photos[i], renders[i], progress);
+      scores[first + i].held_out = held_out;
+    });
+    progress.check();
+  }
   return scores;
 }
 

@@ -2,6 +2,7 @@
 // A render that shows nothing scores what a black picture scores; means and worst camera follow the split.
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/method/score_views.h"
 #include "tests/support/sphere_capture.h"
 
@@ -13,7 +14,7 @@ GaussianCloud nothingToSee() {
   GaussianCloud c;
   c.position_m = {vec3(0, 100, 0)};
   c.rotation = {quat(1, 0, 0, 0)};
-  c.scale_m = {vec3(0.001f)};
+  c.scale_m.assign(1, vec3(0.001f));
   c.opacity = {0.5f};
   c.color = ShBlock(1, 3);
   return c;
@@ -50,6 +51,24 @@ TEST(ScoreViews, AnEmptyMaskCountsEveryPixel) {
   for (std::uint8_t& m : views[0].mask.pixels) m = 0;
   for (u8vec3& p : views[0].photo.pixels) p = u8vec3(0);
   EXPECT_DOUBLE_EQ(scored(views)[0].score.psnr, 100);
+}
+
+TEST(ScoreViews, AViewScoresTheSameAmongMany) {
+  std::vector<FrameView> views = photographs({});
+  const std::vector<ViewScore> all = scored(views);
+  const ViewScore last = scored({views.back()})[0];
+  EXPECT_EQ(all.back().score.ssim, last.score.ssim);
+  EXPECT_EQ(all.back().photo_thumb.pixels, last.photo_thumb.pixels);
+}
+
+TEST(ScoreViews, StopAfterTheLastRender) {
+  const auto device = makeCpuDevice(SimdTarget::Scalar);
+  std::stop_source stop;
+  Progress progress(stop.get_token(), [&](const ProgressReport& r) {
+    if (r.done == r.total) stop.request_stop();
+  });
+  const std::vector<FrameView> views = photographs({});
+  EXPECT_THROW(scoreViews(views, true, nothingToSee(), *device, progress), Cancelled);
 }
 
 TEST(ScoreViews, MeansAreTakenOverOneSplit) {
