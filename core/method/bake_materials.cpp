@@ -87,18 +87,22 @@ BaseColor baseColor(vec3 observed, vec3 diffuse, vec3 specular, float sky, bool 
   return {rho, positive && sky >= kMinSky};
 }
 
-// A view's maps, and the luminance of L_D that the weights still need.
-struct BakedView {
-  MaterialMaps maps;
-  Planes light;
+// What base colour's weights need until the light of all views is known; light: luminance of L_D.
+struct WeightedPixel {
+  std::uint32_t index;
+  float weight, light;
+};
+struct LitPixels {
+  std::vector<float> light;                          // of all pixels with a weight of occlusion, all views
+  std::vector<std::vector<WeightedPixel>> weighted;  // of each view
 };
 
-BakedView assemble(const FrameView& view, const GBuffer& g, std::span<const SurfacePoint> points,
-                   const IntegralImages& light, bool multibounce) {
+// Without base_color_weight. Adds a view to `lit`.
+MaterialMaps assemble(const FrameView& view, const GBuffer& g, std::span<const SurfacePoint> points,
+                      const IntegralImages& light, bool multibounce, LitPixels& lit) {
   const int w = g.alpha.width, h = g.alpha.height;
-  BakedView out{{view.camera, Planes(w, h, 1), Planes(w, h, 3), Planes(w, h, 1), Planes(w, h, 1)},
-                Planes(w, h, 1)};
-  MaterialMaps& m = out.maps;
+  MaterialMaps m{view.camera, Planes(w, h, 1), Planes(w, h, 3), Planes(w, h, 1), {}};
+  std::vector<WeightedPixel>& weighted = lit.weighted.emplace_back();
   for (const SurfacePoint& p : points) {
     const std::size_t i = g.alpha.index(p.x, p.y);
     const float sky = std::clamp(light.sky.values.values[i], 0.0f, 1.0f);
@@ -106,34 +110,31 @@ BakedView assemble(const FrameView& view, const GBuffer& g, std::span<const Surf
     const u8vec3 code = view.photo.pixels[i];
     const BaseColor rho = baseColor(linearFromSrgb(vec3(code) / 255.0f), diffuse, specular, sky, multibounce);
     const float facing = smoothStep(0.1f, 0.4f, glm::dot(p.normal, p.to_eye));
-    const bool covered = view.mask.empty() || view.mask.pixels[i] >= kFullCoverage;
     m.ambient_occlusion.values[i] = sky;
     m.ao_weight.values[i] = facing;
     for (int c = 0; c < 3; ++c) m.base_color.plane(c)[i] = rho.value[c];
-    m.base_color_weight.values[i] = covered && rho.trusted && !clipped(code) ? facing : 0.0f;
-    out.light.values[i] = luminance(diffuse);
+    if (!(facing > 0)) continue;
+    lit.light.push_back(luminance(diffuse));
+    const bool covered = view.mask.empty() || view.mask.pixels[i] >= kFullCoverage;
+    if (covered && rho.trusted && !clipped(code))
+      weighted.push_back({static_cast<std::uint32_t>(i), facing, luminance(diffuse)});
   }
-  return out;
+  return m;
 }
 
 // Takes weight from pixels that get little light compared with the frame's median (methods 5.7).
-void weighByLight(std::span<BakedView> views) {
-  std::vector<float> lit;
-  for (const BakedView& v : views) {
-    for (std::size_t i = 0; i < v.light.values.size(); ++i) {
-      if (v.maps.ao_weight.values[i] > 0) lit.push_back(v.light.values[i]);
-    }
-  }
-  if (lit.empty()) return;
-  const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
-  std::nth_element(lit.begin(), middle, lit.end());
-  const float median = std::max(*middle, 1e-12f);
-  for (BakedView& v : views) {
-    for (std::size_t i = 0; i < v.light.values.size(); ++i) {
-      v.maps.base_color_weight.values[i] *=
-          smoothStep(kDarkShare, 3 * kDarkShare, v.light.values[i] / median);
-    }
-  }
+Planes weightsByLight(const std::vector<WeightedPixel>& pixels, float median, const FrameView& view) {
+  Planes weights(view.camera.width, view.camera.height, 1);
+  for (const WeightedPixel& p : pixels)
+    weights.values[p.index] = p.weight * smoothStep(kDarkShare, 3 * kDarkShare, p.light / median);
+  return weights;
+}
+
+float medianOf(std::vector<float> light) {
+  if (light.empty()) return 0;
+  const auto middle = light.begin() + static_cast<std::ptrdiff_t>(light.size() / 2);
+  std::nth_element(light.begin(), middle, light.end());
+  return std::max(*middle, 1e-12f);
 }
 
 }  // namespace
@@ -195,13 +196,13 @@ void describe(Fields& f, BakeMaterialsOptions& o) {
           o.seed);
 }
 
-std::vector<MaterialMaps> bakeMaterials(std::span<const FrameView> views, const GaussianCloud& cloud,
-                                        const Environment& environment, const BakeMaterialsOptions& options,
-                                        ComputeDevice& device, Progress& progress) {
+void bakeMaterials(std::span<const FrameView> views, const GaussianCloud& cloud,
+                   const Environment& environment, const BakeMaterialsOptions& options, ComputeDevice& device,
+                   Progress& progress, const TakeMaps& take) {
   const EnvironmentSampler light(environment);
   const auto tracer = device.newTracer({.threshold = static_cast<float>(options.threshold)}, cloud);
   GBufferRenderer renderer(device);
-  std::vector<BakedView> baked;
+  LitPixels lit;
   for (std::size_t v = 0; v < views.size(); ++v) {
     Progress part = progress.part(1.0 / static_cast<double>(views.size()), "tracing " + views[v].name);
     const GBuffer g = renderer.render(cloud, nullptr, views[v].camera);
@@ -209,14 +210,29 @@ std::vector<MaterialMaps> bakeMaterials(std::span<const FrameView> views, const 
     part.expect(static_cast<std::int64_t>(points.size()));
     const auto integrals = integrateLight(points, samplingOf(options, v), light, *tracer, part);
     const IntegralImages images = denoised(points, integrals, g, options.denoise_levels);
-    baked.push_back(assemble(views[v], g, points, images, options.multibounce));
+    take(v, assemble(views[v], g, points, images, options.multibounce, lit));
     if (points.empty()) logWarning("camera {}: no surface was found, its picture is not used", views[v].name);
   }
-  weighByLight(baked);
-  std::vector<MaterialMaps> maps;
-  maps.reserve(baked.size());
-  for (BakedView& v : baked) maps.push_back(std::move(v.maps));
-  return maps;
+  const float median = medianOf(std::move(lit.light));
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    progress.check();
+    take(v, {views[v].camera, {}, {}, {}, weightsByLight(lit.weighted[v], median, views[v])});
+  }
+}
+
+std::vector<MaterialMaps> bakeMaterials(std::span<const FrameView> views, const GaussianCloud& cloud,
+                                        const Environment& environment, const BakeMaterialsOptions& options,
+                                        ComputeDevice& device, Progress& progress) {
+  std::vector<MaterialMaps> all(views.size());
+  bakeMaterials(views, cloud, environment, options, device, progress,
+                [&](std::size_t view, const MaterialMaps& maps) {
+                  if (maps.base_color_weight.empty()) {
+                    all[view] = maps;
+                  } else {
+                    all[view].base_color_weight = maps.base_color_weight;
+                  }
+                });
+  return all;
 }
 
 }  // namespace beam

@@ -3,6 +3,7 @@
 // through the Gaussians (eq. 7), denoised; and their weights (methods 5.1-5.9).
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "core/base/fields.h"
@@ -35,6 +36,15 @@ struct MaterialMaps {
   Planes base_color_weight;  // 1
 };
 
+// Takes each view's maps twice, so that no other view's are in memory: as soon as they are known, without
+// base_color_weight, and when all views are baked with nothing but that, for it depends on the light in all.
+using TakeMaps = std::function<void(std::size_t view, const MaterialMaps& maps)>;
+
+void bakeMaterials(std::span<const FrameView> views, const GaussianCloud& cloud,
+                   const Environment& environment, const BakeMaterialsOptions& options, ComputeDevice& device,
+                   Progress& progress, const TakeMaps& take);
+
+// All of them, in memory.
 std::vector<MaterialMaps> bakeMaterials(std::span<const FrameView> views, const GaussianCloud& cloud,
                                         const Environment& environment, const BakeMaterialsOptions& options,
                                         ComputeDevice& device, Progress& progress);

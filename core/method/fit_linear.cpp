@@ -56,9 +56,11 @@ bool isAskedFor(const MaterialMaps& m, std::size_t i) {
   return m.base_color_weight.values[i] > 0 || m.ao_weight.values[i] > 0;
 }
 
-std::size_t pixelsAskedFor(std::span<const MaterialMaps> maps) {
+std::size_t pixelsAskedFor(const MapSource& maps, const Progress& progress) {
   std::size_t count = 0;
-  for (const MaterialMaps& m : maps) {
+  for (std::size_t v = 0; v < maps.views; ++v) {
+    progress.check();
+    const MaterialMaps m = maps.read_weights(v);
     for (std::size_t i = 0; i < m.ao_weight.planeSize(); ++i) count += isAskedFor(m, i);
   }
   return count;
@@ -97,16 +99,17 @@ int strideFor(const ViewEquations& view, std::size_t pixels, std::size_t most_en
   return stride;
 }
 
-std::vector<ViewEquations> collect(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+std::vector<ViewEquations> collect(const MapSource& maps, const GaussianCloud& cloud,
                                    std::size_t most_entries, ComputeDevice& device, Progress& progress) {
   const GaussianBuffers buffers = toBuffers(cloud);
-  const std::size_t pixels = pixelsAskedFor(maps);
+  const std::size_t pixels = pixelsAskedFor(maps, progress);
   std::unique_ptr<Rasterizer> rasterizer;
   std::vector<ViewEquations> views;
   int stride = 0;  // not known before a view has shown something
-  progress.expect(static_cast<std::int64_t>(maps.size()));
-  for (const MaterialMaps& m : maps) {
+  progress.expect(static_cast<std::int64_t>(maps.views));
+  for (std::size_t v = 0; v < maps.views; ++v) {
     progress.step();
+    const MaterialMaps m = maps.read(v);
     if (!rasterizer || rasterizer->desc().width != m.camera.width ||
         rasterizer->desc().height != m.camera.height) {
       rasterizer = device.newRasterizer(
@@ -126,7 +129,7 @@ std::vector<ViewEquations> collect(std::span<const MaterialMaps> maps, const Gau
 // The normal equations of all views, never formed: products only.
 class NormalEquations {
  public:
-  NormalEquations(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, float regularization,
+  NormalEquations(const MapSource& maps, const GaussianCloud& cloud, float regularization,
                   std::size_t most_entries, ComputeDevice& device, Progress& progress)
       : cloud_(cloud),
         regularization_(regularization),
@@ -421,7 +424,7 @@ void descend(const NormalEquations& a, MaterialCoefficients& x, MaterialCoeffici
 
 }  // namespace
 
-MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+MaterialCoefficients fitLinear(const MapSource& maps, const GaussianCloud& cloud,
                                const MaterialCoefficients* before, const FitMaterialsOptions& options,
                                ComputeDevice& device, Progress& progress, std::size_t most_entries) {
   Progress collecting = progress.part(0.3, "collecting blend weights");

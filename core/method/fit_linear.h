@@ -3,7 +3,6 @@
 // picture is linear in the coefficients; blend weights are cached once, conjugate gradients do the rest.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -20,7 +19,7 @@ inline constexpr std::size_t kMostBlendWeights = 150'000'000;  // of 8 bytes: 1.
 // `before`: of the same Gaussians in the frame before, turned with them, or null. The solve starts there and
 // is held to it as options.later says; null: starts from the pictures.
 // Where the views have more than about `most_entries` blend weights, every so manieth pixel is used.
-MaterialCoefficients fitLinear(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
+MaterialCoefficients fitLinear(const MapSource& maps, const GaussianCloud& cloud,
                                const MaterialCoefficients* before, const FitMaterialsOptions& options,
                                ComputeDevice& device, Progress& progress,
                                std::size_t most_entries = kMostBlendWeights);

@@ -34,18 +34,23 @@ ShBlock tripled(const ShBlock& one) {
 }
 
 // `before`: turned to this frame, or null.
-void fitByDescent(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const Materials* before,
+void fitByDescent(const MapSource& maps, const GaussianCloud& cloud, const Materials* before,
                   const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress,
                   Materials& out) {
   const double weight = before ? options.later.temporal_weight : 0;
   const int steps = before ? options.later.adam_iterations : options.adam_iterations;
   const double regularization = options.regularization;
+  std::vector<MaterialMaps> all;  // steps choose among them at random
+  for (std::size_t i = 0; i < maps.views; ++i) {
+    progress.check();
+    all.push_back(maps.read(i));
+  }
   Progress color_part = progress.part(0.5, "fitting base colour");
-  out.base_color = fitDescent(maps, cloud, before ? before->base_color : fromRadiance(cloud),
+  out.base_color = fitDescent(all, cloud, before ? before->base_color : fromRadiance(cloud),
                               {MapKind::BaseColor, steps, regularization, weight}, device, color_part);
   Progress occlusion_part = progress.part(0.5, "fitting ambient occlusion");
   const ShBlock occlusion =
-      fitDescent(maps, cloud, before ? tripled(before->ambient_occlusion) : ShBlock(cloud.size(), 3),
+      fitDescent(all, cloud, before ? tripled(before->ambient_occlusion) : ShBlock(cloud.size(), 3),
                  {MapKind::AmbientOcclusion, steps, regularization, 0}, device, occlusion_part);
   for (std::size_t i = 0; i < out.ambient_occlusion.coefficients.size(); ++i) {
     out.ambient_occlusion.coefficients[i] = occlusion.coefficients[i * 3];
@@ -61,7 +66,7 @@ MaterialCoefficients coefficientsOf(const Materials& m) {
   return x;
 }
 
-void fitByLinearSolve(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const Materials* before,
+void fitByLinearSolve(const MapSource& maps, const GaussianCloud& cloud, const Materials* before,
                       const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress,
                       Materials& out) {
   const bool held = options.later.memory_frames > 0 || options.later.occlusion_memory_frames > 0;
@@ -75,10 +80,10 @@ void fitByLinearSolve(std::span<const MaterialMaps> maps, const GaussianCloud& c
   }
 }
 
-Materials fit(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, const Materials* before,
+Materials fit(const MapSource& maps, const GaussianCloud& cloud, const Materials* before,
               const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress,
               std::vector<float> roughness) {
-  if (maps.empty())
+  if (maps.views == 0)
     throw Error(Error::Kind::Data, "material fit: expected the maps of at least one view, found none");
   Materials out{std::move(roughness), ShBlock(cloud.size(), 3), ShBlock(cloud.size(), 1)};
   const auto by = options.solver == "linear" ? fitByLinearSolve : fitByDescent;
@@ -192,14 +197,20 @@ void describe(Fields& f, LaterMaterialsOptions& o) {
           o.adam_iterations);
 }
 
-Materials fitMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, float roughness,
+MapSource sourceOf(std::span<const MaterialMaps> maps) {
+  const auto weights = [maps](std::size_t i) {
+    return MaterialMaps{maps[i].camera, {}, {}, maps[i].ao_weight, maps[i].base_color_weight};
+  };
+  return {maps.size(), [maps](std::size_t i) { return maps[i]; }, weights};
+}
+
+Materials fitMaterials(const MapSource& maps, const GaussianCloud& cloud, float roughness,
                        const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress) {
   return fit(maps, cloud, nullptr, options, device, progress, std::vector<float>(cloud.size(), roughness));
 }
 
-Materials fitLaterMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
-                            const EarlierFrame& before, const FitMaterialsOptions& options,
-                            ComputeDevice& device, Progress& progress) {
+Materials fitLaterMaterials(const MapSource& maps, const GaussianCloud& cloud, const EarlierFrame& before,
+                            const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress) {
   const std::size_t n = cloud.size();
   if (before.cloud.size() != n || before.materials.roughness.size() != n) {
     throw Error(

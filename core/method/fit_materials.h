@@ -3,6 +3,7 @@
 // blend weights; the paper's L1 + D-SSIM descent as an option.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "core/base/fields.h"
@@ -33,7 +34,16 @@ struct FitMaterialsOptions {
 void describe(Fields& fields, FitMaterialsOptions& options);
 void describe(Fields& fields, LaterMaterialsOptions& options);
 
-Materials fitMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud, float roughness,
+// The maps of several views, read when they are needed: the linear solver has one view's in memory, "adam"
+// all.
+struct MapSource {
+  std::size_t views = 0;
+  std::function<MaterialMaps(std::size_t view)> read;
+  std::function<MaterialMaps(std::size_t view)> read_weights;  // camera and weights alone
+};
+MapSource sourceOf(std::span<const MaterialMaps> maps);  // which it refers to
+
+Materials fitMaterials(const MapSource& maps, const GaussianCloud& cloud, float roughness,
                        const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress);
 
 // The finished frame before: the same Gaussians in the same order.
@@ -44,8 +54,7 @@ struct EarlierFrame {
 
 // Of a later frame of a take: starts from the frame before, whose view-dependence turns with each Gaussian
 // (methods A-19), is held to it, and carries its roughness. Throws Error{Bug} when the counts differ.
-Materials fitLaterMaterials(std::span<const MaterialMaps> maps, const GaussianCloud& cloud,
-                            const EarlierFrame& before, const FitMaterialsOptions& options,
-                            ComputeDevice& device, Progress& progress);
+Materials fitLaterMaterials(const MapSource& maps, const GaussianCloud& cloud, const EarlierFrame& before,
+                            const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress);
 
 }  // namespace beam

@@ -19,15 +19,28 @@ std::filesystem::path mapFile(const std::filesystem::path& folder, const std::st
 
 void writeMaterialMaps(const std::filesystem::path& folder, const std::string& camera,
                        const MaterialMaps& maps) {
-  writeExr(mapFile(folder, camera, "ao"), maps.ambient_occlusion, kOne, ExrPrecision::Half);
-  writeExr(mapFile(folder, camera, "base_color"), maps.base_color, kThree, ExrPrecision::Half);
+  const auto write = [&](const char* map, const Planes& values, const std::vector<std::string>& channels,
+                         ExrPrecision precision) {
+    if (!values.empty()) writeExr(mapFile(folder, camera, map), values, channels, precision);
+  };
+  write("ao", maps.ambient_occlusion, kOne, ExrPrecision::Half);
+  write("base_color", maps.base_color, kThree, ExrPrecision::Half);
   // Weights span more decades than halves hold.
-  writeExr(mapFile(folder, camera, "ao_weight"), maps.ao_weight, kOne, ExrPrecision::Float);
-  writeExr(mapFile(folder, camera, "base_color_weight"), maps.base_color_weight, kOne, ExrPrecision::Float);
+  write("ao_weight", maps.ao_weight, kOne, ExrPrecision::Float);
+  write("base_color_weight", maps.base_color_weight, kOne, ExrPrecision::Float);
 }
 
 bool hasMaterialMaps(const std::filesystem::path& folder, const std::string& camera) {
   return std::filesystem::exists(mapFile(folder, camera, "ao"));
+}
+
+MaterialMaps readMaterialWeights(const std::filesystem::path& folder, const std::string& name,
+                                 const Camera& camera) {
+  return {camera,
+          {},
+          {},
+          readExr(mapFile(folder, name, "ao_weight"), kOne),
+          readExr(mapFile(folder, name, "base_color_weight"), kOne)};
 }
 
 MaterialMaps readMaterialMaps(const std::filesystem::path& folder, const std::string& name,

@@ -9,10 +9,14 @@
 
 namespace beam {
 
+// Those that are there: an empty map writes no file.
 void writeMaterialMaps(const std::filesystem::path& folder, const std::string& camera,
                        const MaterialMaps& maps);
 bool hasMaterialMaps(const std::filesystem::path& folder, const std::string& camera);
 MaterialMaps readMaterialMaps(const std::filesystem::path& folder, const std::string& name,
                               const Camera& camera);
+// The others are empty.
+MaterialMaps readMaterialWeights(const std::filesystem::path& folder, const std::string& name,
+                                 const Camera& camera);
 
 }  // namespace beam

@@ -60,29 +60,31 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
     const Environment light = makeEnvironment(readRadiance(c.input("light.import") / kEnvironmentFile));
     const LentViews lent = trainingViews(c);
     const std::vector<FrameView>& views = lent.all();
-    const std::vector<MaterialMaps> maps =
-        bakeMaterials(views, cloudOf(c), light, options_.bake, c.device, c.progress);
     const std::filesystem::path folder = c.folder / kMapsFolder;
     std::filesystem::create_directory(folder);
-    for (std::size_t i = 0; i < maps.size(); ++i) writeMaterialMaps(folder, views[i].name, maps[i]);
+    bakeMaterials(views, cloudOf(c), light, options_.bake, c.device, c.progress,
+                  [&](std::size_t view, const MaterialMaps& maps) {
+                    writeMaterialMaps(folder, views[view].name, maps);
+                  });
   }
 
   void fit(StepContext& c) const {
     const std::filesystem::path folder = c.input("materials.bake") / kMapsFolder;
-    std::vector<MaterialMaps> maps;
+    std::vector<View> baked;
     for (const View& view : trainingCalibration(c)) {
-      if (hasMaterialMaps(folder, view.name))
-        maps.push_back(readMaterialMaps(folder, view.name, view.camera));
+      if (hasMaterialMaps(folder, view.name)) baked.push_back(view);
     }
+    const MapSource maps{
+        baked.size(), [&](std::size_t i) { return readMaterialMaps(folder, baked[i].name, baked[i].camera); },
+        [&](std::size_t i) { return readMaterialWeights(folder, baked[i].name, baked[i].camera); }};
     const GaussianCloud cloud = cloudOf(c);
     const Materials materials = materialsOf(c, maps, cloud);
     validate(materials, cloud);
     writeSplatPly(c.folder / kMaterialsFile, cloud, &materials);
-    c.scores["views"] = static_cast<double>(maps.size());
+    c.scores["views"] = static_cast<double>(baked.size());
   }
 
-  Materials materialsOf(StepContext& c, std::span<const MaterialMaps> maps,
-                        const GaussianCloud& cloud) const {
+  Materials materialsOf(StepContext& c, const MapSource& maps, const GaussianCloud& cloud) const {
     const bool follows = c.later() && !readTrackNote(c.input("track.joints")).restarted;
     if (!follows) {
       return fitMaterials(maps, cloud, static_cast<float>(options_.bake.roughness), options_.fit, c.device,

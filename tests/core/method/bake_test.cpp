@@ -144,6 +144,26 @@ TEST(BakeMaterials, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.base_color_weight.values, two.base_color_weight.values);
 }
 
+TEST(BakeMaterials, GivesEachViewAwayBeforeTheNext) {
+  const std::vector<FrameView> views = {
+      blankView(above()), blankView(testing::cameraLookingAt({0.3, 1.5, 0}, {0, 0, 0}, kPixels, 150))};
+  const auto device = makeCpuDevice();
+  Progress progress;
+  const auto all = bakeMaterials(views, floor(), uniformLight(), {}, *device, progress);
+  std::vector<std::size_t> order;
+  bakeMaterials(views, floor(), uniformLight(), {}, *device, progress,
+                [&](std::size_t view, const MaterialMaps& maps) {
+                  order.push_back(view);
+                  EXPECT_EQ(maps.base_color_weight.empty(), order.size() <= 2);
+                  if (order.size() <= 2) {
+                    EXPECT_EQ(maps.base_color.values, all[view].base_color.values);
+                  } else {
+                    EXPECT_EQ(maps.base_color_weight.values, all[view].base_color_weight.values);
+                  }
+                });
+  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 0, 1}));
+}
+
 TEST(BakeMaterials, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
@@ -246,8 +266,8 @@ TEST_F(RoundTrip, ReturnsTheColorAndTheRelitPicture) {
   Progress progress;
   const auto maps = bakeMaterials(views, cloud, skyLight(), {.offset_m = 0.005, .roughness = kRoughness},
                                   *device, progress);
-  const Materials materials =
-      fitMaterials(maps, cloud, kRoughness, {.solver = "linear", .regularization = 0.01}, *device, progress);
+  const Materials materials = fitMaterials(sourceOf(maps), cloud, kRoughness,
+                                           {.solver = "linear", .regularization = 0.01}, *device, progress);
   const PreparedLight evening(eveningLight());
   double rho_error = 0, lit_error = 0, lit = 0;
   int count = 0;

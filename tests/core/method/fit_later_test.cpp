@@ -53,7 +53,7 @@ class LaterFit : public testing::MaterialFit {
     Progress progress;
     FitMaterialsOptions options = kAlone;
     options.later = later;
-    return fitLaterMaterials(maps, cloud, before, options, *device, progress);
+    return fitLaterMaterials(sourceOf(maps), cloud, before, options, *device, progress);
   }
   Materials fitLater(std::span<const MaterialMaps> maps, const Materials& before,
                      const LaterMaterialsOptions& later) {
@@ -169,7 +169,7 @@ TEST_F(LaterFit, CarriesRoughness) {
   EXPECT_EQ(fitLater(maps, before, {}).roughness, before.roughness);
   Progress progress;
   const FitMaterialsOptions adam{.adam_iterations = 1, .later = {.adam_iterations = 1}};
-  EXPECT_EQ(fitLaterMaterials(maps, cloud, {cloud, before}, adam, *device, progress).roughness,
+  EXPECT_EQ(fitLaterMaterials(sourceOf(maps), cloud, {cloud, before}, adam, *device, progress).roughness,
             before.roughness);
 }
 
@@ -191,7 +191,7 @@ TEST_F(LaterFit, ByAdamIsHeldByTheTemporalTerm) {
   const auto meanWith = [&](double weight) {
     Progress progress;
     const FitMaterialsOptions options{.later = {.temporal_weight = weight, .adam_iterations = 150}};
-    return seenMean(fitLaterMaterials(maps, cloud, {cloud, before}, options, *device, progress));
+    return seenMean(fitLaterMaterials(sourceOf(maps), cloud, {cloud, before}, options, *device, progress));
   };
   const dvec2 free = meanWith(0), held = meanWith(1);
   EXPECT_LT(free.x, 0.36);

@@ -108,7 +108,7 @@ TEST_F(MaterialFit, ACameraThatSeesNothingDoesNotLiftTheLimitOnMemory) {
   const auto solved = [&](std::size_t most_entries) {
     Progress progress;
     const FitMaterialsOptions options{.solver = "linear", .linear_iterations = 3};
-    return fitLinear(maps, cloud, nullptr, options, *device, progress, most_entries);
+    return fitLinear(sourceOf(maps), cloud, nullptr, options, *device, progress, most_entries);
   };
   constexpr std::size_t kFew = 50'000;
   const MaterialCoefficients all = solved(kMostBlendWeights), some = solved(kFew);
@@ -127,7 +127,7 @@ TEST_F(MaterialFit, StopsWhenAsked) {
   stop.request_stop();
   Progress progress(stop.get_token());
   const std::vector<MaterialMaps> maps = mapsOf(blank());
-  EXPECT_THROW(fitMaterials(maps, cloud, 0.5f, linear, *device, progress), Cancelled);
+  EXPECT_THROW(fitMaterials(sourceOf(maps), cloud, 0.5f, linear, *device, progress), Cancelled);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ class MaterialFit : public ::testing::Test {
 
   Materials fit(std::span<const MaterialMaps> maps, const FitMaterialsOptions& options) {
     Progress progress;
-    return fitMaterials(maps, cloud, 0.5f, options, *device, progress);
+    return fitMaterials(sourceOf(maps), cloud, 0.5f, options, *device, progress);
   }
 
   struct Difference {
