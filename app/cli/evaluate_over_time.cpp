@@ -49,7 +49,7 @@ struct Moment {
   FrameIndex frame;
   FrameResult result;
   std::optional<TrueSkin> skin;
-  std::vector<GBuffer> views;  // of the test cameras; only with a skin
+  std::vector<SeenPoints> views;  // of the test cameras; only with a skin
 };
 
 class MotionScorer {
@@ -84,8 +84,8 @@ class MotionScorer {
                         worldFromCapture(project_.capture().up));
     if (!m.skin) return m;
     for (const Camera& camera : cameras_) {
-      m.views.push_back(
-          renderer_.render(m.result.cloud, m.result.materials ? &*m.result.materials : nullptr, camera));
+      const Materials* materials = m.result.materials ? &*m.result.materials : nullptr;
+      m.views.push_back(seenPoints(renderer_.render(m.result.cloud, materials, camera), camera, *m.skin));
     }
     return m;
   }
@@ -116,7 +116,7 @@ class MotionScorer {
     ViewFlicker sum;
     double n = 0;
     for (std::size_t v = 0; v < cameras_.size(); ++v) {
-      const auto f = viewFlicker(before_->views[v], now.views[v], cameras_[v], *before_->skin, *now.skin);
+      const auto f = viewFlicker(before_->views[v], now.views[v]);
       if (!f) continue;
       sum.radiance += f->radiance, sum.base_color += f->base_color, ++n;
     }

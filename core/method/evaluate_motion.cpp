@@ -160,18 +160,28 @@ double baseColorFlicker(const GaussianCloud& before, const Materials& before_mat
   return changeOfDegree0(before_materials.base_color, now_materials.base_color, before.opacity);
 }
 
-std::optional<ViewFlicker> viewFlicker(const GBuffer& before, const GBuffer& now, const Camera& camera,
-                                       const TrueSkin& before_truth, const TrueSkin& truth, double most_m) {
+SeenPoints seenPoints(const GBuffer& view, const Camera& camera, const TrueSkin& truth, double most_m) {
+  const std::size_t n = truth.position_m.size();
+  SeenPoints s{std::vector<std::uint8_t>(n), std::vector<vec3>(n),
+               std::vector<vec3>(view.base_color.empty() ? 0 : n)};
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto pixel = seenAt(view, camera, truth.position_m[i], truth.normal[i], most_m);
+    if (!pixel) continue;
+    const float alpha = view.alpha.pixels[*pixel];
+    s.seen[i] = 1;
+    s.radiance[i] = view.radiance.pixels[*pixel] / alpha;
+    if (!s.base_color.empty()) s.base_color[i] = view.base_color.pixels[*pixel] / alpha;
+  }
+  return s;
+}
+
+std::optional<ViewFlicker> viewFlicker(const SeenPoints& before, const SeenPoints& now) {
   ViewFlicker f;
   const bool materials = !before.base_color.empty() && !now.base_color.empty();
-  for (std::size_t i = 0; i < truth.position_m.size(); ++i) {
-    const auto a = seenAt(before, camera, before_truth.position_m[i], before_truth.normal[i], most_m);
-    const auto b = seenAt(now, camera, truth.position_m[i], truth.normal[i], most_m);
-    if (!a || !b) continue;
-    const float alpha_a = before.alpha.pixels[*a], alpha_b = now.alpha.pixels[*b];
-    f.radiance += meanChange(before.radiance.pixels[*a] / alpha_a, now.radiance.pixels[*b] / alpha_b);
-    if (materials)
-      f.base_color += meanChange(before.base_color.pixels[*a] / alpha_a, now.base_color.pixels[*b] / alpha_b);
+  for (std::size_t i = 0; i < now.seen.size(); ++i) {
+    if (!before.seen[i] || !now.seen[i]) continue;
+    f.radiance += meanChange(before.radiance[i], now.radiance[i]);
+    if (materials) f.base_color += meanChange(before.base_color[i], now.base_color[i]);
     ++f.points;
   }
   if (f.points < kFewestPoints) return std::nullopt;

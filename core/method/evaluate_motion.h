@@ -48,15 +48,21 @@ double radianceFlicker(const GaussianCloud& before, const GaussianCloud& now);
 double baseColorFlicker(const GaussianCloud& before, const Materials& before_materials,
                         const Materials& now_materials);
 
-// The same in one view, along true points that both frames show (front-facing, inside the picture, depth
-// within `most_m` of the rendered depth): mean absolute change of the value at the nearest pixel, divided by
-// alpha. Nothing where fewer than 50 points are seen.
+// What a view shows of the true points (front-facing, inside the picture, depth within `most_m` of the
+// rendered depth): the values at the nearest pixel, divided by alpha.
+struct SeenPoints {
+  std::vector<std::uint8_t> seen;  // a point each
+  std::vector<vec3> radiance,
+      base_color;  // of points that are not seen: 0; base_color: empty without materials
+};
+SeenPoints seenPoints(const GBuffer& view, const Camera& camera, const TrueSkin& truth, double most_m = 0.01);
+
+// The same in one view, along true points that both frames show: mean absolute change of the values. Nothing
+// where fewer than 50 points are seen.
 struct ViewFlicker {
   double radiance = 0, base_color = 0;  // base_color: 0 without materials
   std::size_t points = 0;
 };
-std::optional<ViewFlicker> viewFlicker(const GBuffer& before, const GBuffer& now, const Camera& camera,
-                                       const TrueSkin& before_truth, const TrueSkin& truth,
-                                       double most_m = 0.01);
+std::optional<ViewFlicker> viewFlicker(const SeenPoints& before, const SeenPoints& now);
 
 }  // namespace beam

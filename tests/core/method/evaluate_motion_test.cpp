@@ -130,6 +130,7 @@ struct Wall {
       }
     }
   }
+  SeenPoints shown() const { return seenPoints(g, camera, points); }
 };
 
 TEST(Flicker, OfAViewFollowsTheVisiblePointsAndForgivesCoverage) {
@@ -138,7 +139,7 @@ TEST(Flicker, OfAViewFollowsTheVisiblePointsAndForgivesCoverage) {
   for (float& a : now.g.alpha.pixels) a = 0.9f;
   for (vec3& c : now.g.radiance.pixels) c = 0.9f * vec3(0.5f);
   for (vec3& c : now.g.base_color.pixels) c = 0.9f * vec3(0.28f);
-  const auto f = viewFlicker(before.g, now.g, before.camera, before.points, now.points);
+  const auto f = viewFlicker(before.shown(), now.shown());
   ASSERT_TRUE(f);
   EXPECT_EQ(f->points, 100u);
   EXPECT_NEAR(f->radiance, 0, 1e-6);
@@ -149,10 +150,10 @@ TEST(Flicker, OfAViewLeavesOutWhatIsHiddenOrTurnedAway) {
   const Wall before;
   Wall now;
   for (float& d : now.g.depth_m.pixels) d = 1.5f;
-  EXPECT_FALSE(viewFlicker(before.g, now.g, before.camera, before.points, now.points));
+  EXPECT_FALSE(viewFlicker(before.shown(), now.shown()));
   Wall away;
   for (vec3& n : away.points.normal) n = -n;
-  EXPECT_FALSE(viewFlicker(before.g, away.g, before.camera, before.points, away.points));
+  EXPECT_FALSE(viewFlicker(before.shown(), away.shown()));
 }
 
 }  // namespace
