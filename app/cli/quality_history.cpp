@@ -87,7 +87,8 @@ class Collector {
     return false;
   }
 
-  // A camera with pictures that was not scored had no readable one: nothing else leaves it out.
+  // Refers to the views of history_. A camera with pictures that was not scored had no readable one: nothing
+  // else leaves it out.
   std::vector<ScoredFrame> scored() const {
     std::vector<std::string> expected;
     for (std::size_t v = 0; v < project_.capture().views.size(); ++v) {

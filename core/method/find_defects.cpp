@@ -54,7 +54,9 @@ bool isBlack(const ViewScore& v, const DefectLimits& limits) {
 class DefectFinder {
  public:
   DefectFinder(std::span<const ScoredFrame> frames, const DefectLimits& limits)
-      : frames_(frames), limits_(limits), cameras_(byCamera(frames)) {}
+      : frames_(frames), limits_(limits), cameras_(byCamera(frames)) {
+    for (std::size_t f = 0; f < frames.size(); ++f) at_.emplace(frames[f].index, f);
+  }
 
   std::vector<Defect> find() {
     missing();
@@ -149,20 +151,32 @@ class DefectFinder {
            a.photo_thumb.pixels == b.photo_thumb.pixels;
   }
 
-  // Mean squared difference between the camera's photographs and its renders `lag` frames before, and for the
-  // same photographs at no lag; repeated pictures say nothing of the moment.
-  std::pair<double, double> differences(const CameraScores& scores, int lag) const {
-    double lagged = 0, own = 0, n = 0;
+  // A photograph that says something of its moment: neither black nor a repetition; and its mean squared
+  // difference to the render of that moment.
+  struct Telling {
+    std::size_t frame;
+    double own;
+  };
+  std::vector<Telling> tellingOf(const CameraScores& scores) const {
+    std::vector<Telling> telling;
     for (std::size_t f = 0; f < scores.size(); ++f) {
-      const auto other = std::find_if(frames_.begin(), frames_.end(), [&](const ScoredFrame& s) {
-        return s.index == frames_[f].index - lag;
-      });
-      if (other == frames_.end() || !scores[f] || isBlack(*scores[f], limits_)) continue;
-      if (f > 0 && stoodStill(scores, f) == true) continue;
-      const ViewScore* there = scores[static_cast<std::size_t>(other - frames_.begin())];
+      if (!scores[f] || isBlack(*scores[f], limits_) || (f > 0 && stoodStill(scores, f) == true)) continue;
+      telling.push_back({f, meanSquaredDifference(scores[f]->photo_thumb, scores[f]->render_thumb)});
+    }
+    return telling;
+  }
+
+  // Mean difference between the photographs and the renders `lag` frames before, and for the same photographs
+  // at no lag.
+  std::pair<double, double> differences(const CameraScores& scores, const std::vector<Telling>& telling,
+                                        int lag) const {
+    double lagged = 0, own = 0, n = 0;
+    for (const Telling& t : telling) {
+      const auto other = at_.find(frames_[t.frame].index - lag);
+      const ViewScore* there = other == at_.end() ? nullptr : scores[other->second];
       if (!there) continue;
-      lagged += meanSquaredDifference(scores[f]->photo_thumb, there->render_thumb);
-      own += meanSquaredDifference(scores[f]->photo_thumb, scores[f]->render_thumb);
+      lagged += meanSquaredDifference(scores[t.frame]->photo_thumb, there->render_thumb);
+      own += t.own;
       ++n;
     }
     return n > 0 ? std::pair(lagged / n, own / n) : std::pair(0.0, 0.0);
@@ -171,9 +185,11 @@ class DefectFinder {
   void late(const std::string& camera, const CameraScores& scores) {
     int best_lag = 0;
     double best = limits_.late_gain;
+    const std::vector<Telling> telling = tellingOf(scores);
     for (int lag = -limits_.most_late; lag <= limits_.most_late; ++lag) {
-      const auto [lagged, own] = differences(scores, lag);
-      if (lag == 0 || own < kStill || lagged >= best * own) continue;
+      if (lag == 0) continue;
+      const auto [lagged, own] = differences(scores, telling, lag);
+      if (own < kStill || lagged >= best * own) continue;
       best = lagged / own;
       best_lag = lag;
     }
@@ -244,6 +260,7 @@ class DefectFinder {
   std::span<const ScoredFrame> frames_;
   const DefectLimits& limits_;
   std::map<std::string, CameraScores> cameras_;
+  std::map<int, std::size_t> at_;  // of frames, by index in the capture
   std::vector<Defect> found_;
 };
 

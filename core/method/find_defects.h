@@ -15,7 +15,7 @@ namespace beam {
 struct ScoredFrame {
   std::string name;
   int index = 0;  // in the capture; neighbours in time differ by one
-  std::vector<ViewScore> views;
+  std::span<const ViewScore> views;
   std::vector<std::string> missing;  // cameras of the capture without a readable picture
 };
 

@@ -33,25 +33,38 @@ ViewScore good(int camera, int moment) {
   return v;
 }
 
-std::vector<ScoredFrame> goodFrames() {
-  std::vector<ScoredFrame> frames;
+struct Frame {
+  std::string name;
+  int index;
+  std::vector<ViewScore> views;
+  std::vector<std::string> missing;
+};
+
+std::vector<Defect> defectsOf(const std::vector<Frame>& frames) {
+  std::vector<ScoredFrame> scored;
+  for (const Frame& f : frames) scored.push_back({f.name, f.index, f.views, f.missing});
+  return findDefects(scored);
+}
+
+std::vector<Frame> goodFrames() {
+  std::vector<Frame> frames;
   for (int f = 0; f < kFrames; ++f) {
-    ScoredFrame frame{"frame" + std::to_string(f), f, {}, {}};
+    Frame frame{"frame" + std::to_string(f), f, {}, {}};
     for (int c = 0; c < kCameras; ++c) frame.views.push_back(good(c, f));
     frames.push_back(std::move(frame));
   }
   return frames;
 }
 
-TEST(FindDefects, AGoodCaptureHasNone) { EXPECT_TRUE(findDefects(goodFrames()).empty()); }
+TEST(FindDefects, AGoodCaptureHasNone) { EXPECT_TRUE(defectsOf(goodFrames()).empty()); }
 
 TEST(FindDefects, NamesTheDroppedFrames) {
-  std::vector<ScoredFrame> frames = goodFrames();
+  std::vector<Frame> frames = goodFrames();
   for (const int f : {2, 3}) {
     frames[f].views.erase(frames[f].views.begin() + 4);
     frames[f].missing = {"cam4"};
   }
-  const std::vector<Defect> found = findDefects(frames);
+  const std::vector<Defect> found = defectsOf(frames);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].kind, DefectKind::Missing);
   EXPECT_EQ(found[0].camera, "cam4");
@@ -59,12 +72,12 @@ TEST(FindDefects, NamesTheDroppedFrames) {
 }
 
 TEST(FindDefects, NamesOneBlackPictureAndTheLossItMakes) {
-  std::vector<ScoredFrame> frames = goodFrames();
+  std::vector<Frame> frames = goodFrames();
   ViewScore& v = frames[5].views[1];
   v.photo_luma = v.photo_sharpness = 0;
   v.photo_thumb = Image<std::uint8_t>(kThumbSide_px, kThumbSide_px);
   v.score.psnr = 6;
-  const std::vector<Defect> found = findDefects(frames);
+  const std::vector<Defect> found = defectsOf(frames);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].kind, DefectKind::Black);
   EXPECT_EQ(found[0].camera, "cam1");
@@ -74,9 +87,9 @@ TEST(FindDefects, NamesOneBlackPictureAndTheLossItMakes) {
 }
 
 TEST(FindDefects, NamesABlurredCamera) {
-  std::vector<ScoredFrame> frames = goodFrames();
-  for (ScoredFrame& f : frames) f.views[2].photo_sharpness *= 0.4;
-  const std::vector<Defect> found = findDefects(frames);
+  std::vector<Frame> frames = goodFrames();
+  for (Frame& f : frames) f.views[2].photo_sharpness *= 0.4;
+  const std::vector<Defect> found = defectsOf(frames);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].kind, DefectKind::Blurred);
   EXPECT_EQ(found[0].camera, "cam2");
@@ -86,9 +99,9 @@ TEST(FindDefects, NamesABlurredCamera) {
 
 TEST(FindDefects, NamesACameraThatIsThreeFramesLateOrEarly) {
   for (const int lag : {3, -3}) {
-    std::vector<ScoredFrame> frames = goodFrames();
+    std::vector<Frame> frames = goodFrames();
     for (int f = 0; f < kFrames; ++f) frames[f].views[3].photo_thumb = good(3, f - lag).photo_thumb;
-    const std::vector<Defect> found = findDefects(frames);
+    const std::vector<Defect> found = defectsOf(frames);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].kind, DefectKind::Late);
     EXPECT_EQ(found[0].camera, "cam3");
@@ -97,8 +110,20 @@ TEST(FindDefects, NamesACameraThatIsThreeFramesLateOrEarly) {
   }
 }
 
+TEST(FindDefects, LatenessIsCountedInFramesOfTheCapture) {
+  std::vector<Frame> frames = goodFrames();
+  for (int f = 0; f < kFrames; ++f) {
+    frames[f].views[3].photo_thumb = good(3, f - 2).photo_thumb;
+    frames[f].index += 10;
+  }
+  frames.erase(frames.begin() + 5);
+  const std::vector<Defect> found = defectsOf(frames);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].figure, 2);
+}
+
 TEST(FindDefects, NamesAFrozenPictureOnlyWhileTheOthersMove) {
-  std::vector<ScoredFrame> frames = goodFrames();
+  std::vector<Frame> frames = goodFrames();
   const auto freeze = [&](int camera) {
     ViewScore& now = frames[7].views[camera];
     const ViewScore& before = frames[6].views[camera];
@@ -106,19 +131,19 @@ TEST(FindDefects, NamesAFrozenPictureOnlyWhileTheOthersMove) {
     now.photo_thumb = before.photo_thumb;
   };
   freeze(0);
-  const std::vector<Defect> found = findDefects(frames);
+  const std::vector<Defect> found = defectsOf(frames);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].kind, DefectKind::Frozen);
   EXPECT_EQ(found[0].camera, "cam0");
   EXPECT_THAT(found[0].frames, ElementsAre("frame7"));
   for (int c = 1; c < kCameras; ++c) freeze(c);
-  EXPECT_TRUE(findDefects(frames).empty());
+  EXPECT_TRUE(defectsOf(frames).empty());
 }
 
 TEST(FindDefects, NamesACameraOfAnotherExposure) {
-  std::vector<ScoredFrame> frames = goodFrames();
-  for (ScoredFrame& f : frames) f.views[5].photo_luma *= 1.4;
-  const std::vector<Defect> found = findDefects(frames);
+  std::vector<Frame> frames = goodFrames();
+  for (Frame& f : frames) f.views[5].photo_luma *= 1.4;
+  const std::vector<Defect> found = defectsOf(frames);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].kind, DefectKind::Exposure);
   EXPECT_EQ(found[0].camera, "cam5");

@@ -40,9 +40,9 @@ TEST(LeftOut, FramesOfACameraAreToldAsRangesWithTheMomentThatTheScoresKnow) {
 }
 
 TEST(LeftOut, TheLossComparesFramesAndSaysWhatIsNotKnown) {
-  const std::vector<ScoredFrame> frames = {
-      {"f0", 0, {scored("a", 30), scored("b", 32), scored("t", 28, true)}, {}},
-      {"f1", 1, {scored("a", 31), scored("b", 9, false, true), scored("t", 26, true)}, {}}};
+  const std::vector<ViewScore> all = {scored("a", 30), scored("b", 32), scored("t", 28, true)},
+                               fewer = {scored("a", 31), scored("b", 9, false, true), scored("t", 26, true)};
+  const std::vector<ScoredFrame> frames = {{"f0", 0, all, {}}, {"f1", 1, fewer, {}}};
   const LeftOutLoss loss = lossOf(frames);
   EXPECT_EQ(loss.least_fitted, 1);
   EXPECT_EQ(loss.of, 2);
@@ -55,8 +55,9 @@ TEST(LeftOut, TheLossComparesFramesAndSaysWhatIsNotKnown) {
 }
 
 TEST(LeftOut, WithoutHeldOutCamerasNoFigureIsMadeUp) {
-  const std::vector<ScoredFrame> frames = {{"f0", 0, {scored("a", 30), scored("b", 32)}, {}},
-                                           {"f1", 1, {scored("a", 33), scored("b", 9, false, true)}, {}}};
+  const std::vector<ViewScore> all = {scored("a", 30), scored("b", 32)},
+                               fewer = {scored("a", 33), scored("b", 9, false, true)};
+  const std::vector<ScoredFrame> frames = {{"f0", 0, all, {}}, {"f1", 1, fewer, {}}};
   const std::string text = toText(lossOf(frames));
   EXPECT_THAT(text, HasSubstr("--hold-out"));
   EXPECT_THAT(text, Not(HasSubstr("The loss shows")));
