@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/frame_cache.h"
 
-#include <unistd.h>
-
 #include <algorithm>
+
+#include "core/base/memory.h"
 
 namespace beam {
 namespace {
@@ -31,9 +31,7 @@ std::uint64_t bytesOf(const FrameValues& v) {
 
 std::uint64_t defaultFrameBudget() {
   constexpr std::uint64_t kMost = 2'000'000'000;
-  const auto memory = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-                      static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return std::min(kMost, memory / 4);
+  return std::min(kMost, availableMemoryBytes() / 4);
 }
 
 FrameCache::FrameCache(std::uint64_t budget_bytes, std::function<void(FrameIndex)> arrived)

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <new>
 #include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/pipeline/file_digest.h"
 
@@ -32,15 +32,8 @@ std::string stampOf(const std::vector<std::string>& files) {
   return all;
 }
 
-// Linux kills who takes more than there is, rather than refuse it. As much again is left to the step.
-bool memoryIsThereFor(std::size_t bytes) {
-  std::ifstream facts("/proc/meminfo");
-  std::string name;
-  for (std::uint64_t kib = 0; facts >> name >> kib; facts.ignore(100, '\n')) {
-    if (name == "MemAvailable:") return kib / 2 >= bytes / 1024;
-  }
-  return true;
-}
+// As much again is left to the step.
+bool memoryIsThereFor(std::size_t bytes) { return availableMemoryBytes() / 2 >= bytes; }
 
 }  // namespace
 
