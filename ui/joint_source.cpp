@@ -2,8 +2,13 @@
 #include "ui/joint_source.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 
+#include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/stages/carried_skin.h"
+#include "core/stages/track_files.h"
 
 namespace beam {
 namespace {
@@ -11,14 +16,34 @@ namespace {
 constexpr const char* kTrackStage = "track";
 constexpr const char* kJointsStep = "track.joints";
 constexpr int kTrailFrames = 16;
-// The binding of the skin (methods 3.5).
-constexpr int kAnchors = 8;
-constexpr float kReach_m = 0.02f;
 
 const SurveyLane* trackLane(const TakeSurvey& survey) {
   const auto found = std::find_if(survey.lanes.begin(), survey.lanes.end(),
                                   [](const SurveyLane& lane) { return lane.stage == kTrackStage; });
   return found == survey.lanes.end() ? nullptr : &*found;
+}
+
+struct FrameJoints {
+  JointPositions position_m;  // empty: the frame has none
+  bool restarted = false;     // they are others than those of the frame before
+};
+
+FrameJoints readJoints(const Project& project, FrameIndex frame) {
+  const auto folder = project.result(kJointsStep, frame);
+  if (!folder) return {};
+  return {readSplatPly(*folder / kJointsFile).cloud.position_m, readTrackNote(*folder).restarted};
+}
+
+// What the frame's skin hangs on; null where its results are not those of `cloud`.
+std::shared_ptr<const Anchors> readBinding(const Project& project, FrameIndex frame,
+                                           const GaussianCloud& cloud) {
+  const auto joints = project.result(kJointsStep, frame);
+  auto folder = project.result("surface.refine", frame);
+  if (!folder) folder = project.result("surface.fit", frame);
+  if (!joints || !folder) return nullptr;
+  const CarriedSkin skin = readCarriedSkin(cloud, *folder, nullptr);
+  if (skin.rest_skin.size() != cloud.size()) return nullptr;
+  return std::make_shared<const Anchors>(boundTo(skin.rest_skin, readPosePly(*joints / kRestPoseFile)));
 }
 
 }  // namespace
@@ -39,45 +64,59 @@ struct JointSource::Wish {
   std::shared_ptr<const GaussianCloud> cloud;  // of the frame
 };
 
-JointSource::JointSource(const ProjectModel& model, QObject* parent) : QObject(parent), model_(model) {}
+struct JointSource::Memory {
+  // Of one survey, so that its keys are worked out once: each holds those of all frames before.
+  std::shared_ptr<const TakeSurvey> survey;
+  std::optional<Project> project;
+  std::map<std::int32_t, std::pair<Digest, FrameJoints>> joints;  // by frame, with the survey's stamp
+  std::shared_ptr<const GaussianCloud> bound_cloud;
+  std::shared_ptr<const Anchors> bound;
+};
+
+JointSource::JointSource(const ProjectModel& model, QObject* parent)
+    : QObject(parent), model_(model), memory_(std::make_shared<Memory>()) {}
 
 JointsShown JointSource::answer(const Wish& wish, Memory& memory) {
   JointsShown shown;
   const SurveyLane* lane = trackLane(*wish.survey);
   if (!lane) return shown;  // this program tracks nothing
-  const auto jointsOf = [&](int f) -> const JointPositions& {
-    const Digest stamp = wish.survey->stamps[f];
-    auto known = memory.joints.find(f);
-    if (known == memory.joints.end() || known->second.first != stamp) {
-      JointPositions positions;
-      if (const auto folder = wish.project.result(kJointsStep, FrameIndex{f}))
-        positions = readSplatPly(*folder / kJointsFile).cloud.position_m;
-      known = memory.joints.insert_or_assign(f, std::pair(stamp, std::move(positions))).first;
-    }
+  if (memory.survey != wish.survey) {
+    memory.survey = wish.survey;
+    memory.project = wish.project;
+  }
+  const Project& project = *memory.project;
+  const auto jointsOf = [&](FrameIndex f) -> const FrameJoints& {
+    const Digest stamp = wish.survey->stamps[f.value];
+    auto known = memory.joints.find(f.value);
+    if (known == memory.joints.end() || known->second.first != stamp)
+      known = memory.joints.insert_or_assign(f.value, std::pair(stamp, readJoints(project, f))).first;
     return known->second.second;
   };
-  const int last = wish.frame.value;
-  const JointPositions& now = jointsOf(last);
-  if (now.empty()) {
+  const FrameJoints& now = jointsOf(wish.frame);
+  if (now.position_m.empty()) {
     shown.hint = "no joints of this frame yet: run until " + QString::fromStdString(lane->title);
     return shown;
   }
-  int rest = last;
-  while (rest > 0 && jointsOf(rest - 1).size() == now.size()) --rest;
-  for (int f = std::max(rest, last - kTrailFrames + 1); f <= last; ++f) shown.trails.push_back(jointsOf(f));
-  if (wish.picked < 0 || wish.picked >= static_cast<int>(now.size()) || !wish.cloud) return shown;
-  if (!memory.bound || memory.bound_stamp != wish.survey->stamps[rest]) {
-    const std::optional<FrameResult> skin = loadFrameResult(wish.project, FrameIndex{rest});
-    memory.bound = nullptr;
-    if (skin)
-      memory.bound = std::make_shared<const Anchors>(
-          anchorTo(skin->cloud.position_m, jointsOf(rest), kAnchors, kReach_m));
-    memory.bound_stamp = wish.survey->stamps[rest];
+  const Take take = project.takeOf(wish.frame);
+  std::optional<FrameIndex> at = wish.frame;
+  while (at && project.takeOf(*at) == take && shown.trails.size() < kTrailFrames) {
+    const FrameJoints& joints = jointsOf(*at);
+    if (joints.position_m.size() != now.position_m.size()) break;
+    shown.trails.push_back(joints.position_m);
+    at = joints.restarted ? std::nullopt : take.before(*at);
   }
-  // A frame that was fitted anew has other Gaussians than the rest frame: bound as they stand.
-  const bool same = memory.bound && memory.bound->points() == wish.cloud->size();
-  shown.influence = std::make_shared<const std::vector<float>>(influenceOf(
-      same ? *memory.bound : anchorTo(wish.cloud->position_m, now, kAnchors, kReach_m), wish.picked));
+  std::reverse(shown.trails.begin(), shown.trails.end());
+  std::erase_if(memory.joints, [&](const auto& known) {
+    return std::abs(known.first - wish.frame.value) > kTrailFrames * take.step;
+  });
+  if (wish.picked < 0 || wish.picked >= static_cast<int>(shown.trails.back().size()) || !wish.cloud)
+    return shown;
+  if (memory.bound_cloud != wish.cloud) {
+    memory.bound = readBinding(project, wish.frame, *wish.cloud);
+    memory.bound_cloud = wish.cloud;
+  }
+  if (memory.bound)
+    shown.influence = std::make_shared<const std::vector<float>>(influenceOf(*memory.bound, wish.picked));
   return shown;
 }
 

@@ -5,7 +5,6 @@
 
 #include <QObject>
 
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -16,12 +15,12 @@ namespace beam {
 
 using JointPositions = std::vector<vec3>;
 
-// Anchors of the skin as they were bound; shares of `joint` in every skin Gaussian, 0 where it is none of its
-// anchors.
+// Shares of `joint` in every skin Gaussian, 0 where it is none of its anchors.
 std::vector<float> influenceOf(const Anchors& anchors, std::uint32_t joint);
 
 struct JointsShown {
-  std::vector<JointPositions> trails;                   // oldest first, the last is the frame's; empty: none
+  // Oldest first, the last is the frame's; empty: none. All of them are the same joints.
+  std::vector<JointPositions> trails;
   QString hint;                                         // why there are none
   std::shared_ptr<const std::vector<float>> influence;  // of the picked joint; null: none
 };
@@ -43,21 +42,16 @@ class JointSource final : public QObject {
   void changed();
 
  private:
-  // What the worker keeps between answers.
-  struct Memory {
-    std::map<std::int32_t, std::pair<Digest, JointPositions>> joints;  // by frame, with the survey's stamp
-    Digest bound_stamp;                                                // of the rest frame of `bound`
-    std::shared_ptr<const Anchors> bound;
-  };
   struct Wish;
+  struct Memory;  // what the worker keeps between answers
   static JointsShown answer(const Wish& wish, Memory& memory);
 
   const ProjectModel& model_;
   int picked_ = -1;
   JointsShown shown_;
   std::uint64_t ticket_ = 0, seen_ = 0;
-  std::shared_ptr<Memory> memory_ = std::make_shared<Memory>();  // used by worker_ alone
-  LatestWorker worker_;                                          // last: it stops first
+  std::shared_ptr<Memory> memory_;  // used by worker_ alone
+  LatestWorker worker_;             // last: it stops first
 };
 
 }  // namespace beam

@@ -18,6 +18,8 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/scene/pose.h"
+#include "core/stages/carried_skin.h"
+#include "core/stages/track_files.h"
 #include "tests/support/splat_shapes.h"
 #include "tests/support/temp_dir.h"
 #include "ui/main_window.h"
@@ -33,6 +35,7 @@ namespace fs = std::filesystem;
 using testing::TempDir;
 
 constexpr int kFrames = 6;
+constexpr int kRestart = 4;  // the joints begin anew there
 
 template <class Condition>
 bool waitFor(Condition&& condition, int patience_ms = 20000) {
@@ -87,6 +90,20 @@ void describe(Fields& f, BallOptions& o) {
   f.field({.name = "size", .label = "Size", .help = "Gaussians.", .min = 1, .max = 1e6}, o.size);
 }
 
+GaussianCloud ballAt(float frame, int size) {
+  GaussianCloud cloud;
+  testing::addSphere(cloud, vec3(0.1f * frame, 1, 0), 0.3f, size);
+  return cloud;
+}
+
+// One at either side of the ball.
+GaussianCloud jointsAt(float frame) {
+  GaussianCloud joints;
+  for (const float side : {-0.3f, 0.3f})
+    testing::addSplat(joints, vec3(0.1f * frame + side, 1, 0), vec3(0, 0, 1), 0.1f, 0.01f);
+  return joints;
+}
+
 std::atomic<int> g_held_frame{-1};  // a step of this frame waits until it is another
 
 // Writes a ball that wanders with the frame.
@@ -105,6 +122,7 @@ class BallStage final : public StageOf<BallOptions> {
     c.scores["gaussians"] = static_cast<double>(cloud.size()) + c.frame.value;
     if (info_.id == "track") {
       writePosePly(c.folder / kRestPoseFile, poseOf(jointsAt(0)));
+      writeTrackNote(c.folder, {c.frame.value == kRestart, 1});
       return writeSplatPly(c.folder / kJointsFile, joints, nullptr);
     }
     if (info_.id == "surface") {
@@ -122,18 +140,7 @@ class BallStage final : public StageOf<BallOptions> {
   }
 
  private:
-  GaussianCloud ballAt(float frame) const {
-    GaussianCloud cloud;
-    testing::addSphere(cloud, vec3(0.1f * frame, 1, 0), 0.3f, options_.size);
-    return cloud;
-  }
-  // One at either side of the ball.
-  static GaussianCloud jointsAt(float frame) {
-    GaussianCloud joints;
-    for (const float side : {-0.3f, 0.3f})
-      testing::addSplat(joints, vec3(0.1f * frame + side, 1, 0), vec3(0, 0, 1), 0.1f, 0.01f);
-    return joints;
-  }
+  GaussianCloud ballAt(float frame) const { return beam::ballAt(frame, options_.size); }
 
   StageInfo info_;
 };
@@ -425,16 +432,19 @@ TEST_F(SolvedTimeline, ShowsJointsWithTheirTrailsAndTheInfluenceOfThePickedOne) 
   EXPECT_FALSE(window.joints().shown().influence);
   Q_EMIT window.sceneView().jointPicked(1);
   ASSERT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().influence != nullptr; }));
-  const std::vector<float>& shares = *window.joints().shown().influence;
-  const std::vector<vec3>& skin = window.model().values().cloud->position_m;
-  ASSERT_EQ(shares.size(), skin.size());
-  for (std::size_t i = 0; i < skin.size(); ++i) {
-    const float side = skin[i].x - 0.3f;  // of the ball's middle
-    if (std::abs(side) < 0.05f) continue;
-    EXPECT_NEAR(shares[i], side > 0 ? 1 : 0, 0.01) << side;
-  }
+  const GaussianCloud skin = ballAt(0, BallOptions().size);
+  EXPECT_EQ(*window.joints().shown().influence, influenceOf(boundTo(poseOf(skin), poseOf(jointsAt(0))), 1));
   window.joints().pick(-1);
   EXPECT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().influence == nullptr; }));
+}
+
+TEST_F(SolvedTimeline, JoinsNoJointsAcrossARestart) {
+  window.showView(StudioView::Scene);
+  window.player().goTo(kRestart + 1);
+  ASSERT_TRUE(waitFor([&] { return window.settled() && !window.joints().shown().trails.empty(); }));
+  ASSERT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().trails.size() == 2; }))
+      << window.joints().shown().trails.size();
+  EXPECT_NEAR(window.joints().shown().trails[0][1].x, 0.1f * kRestart + 0.3f, 1e-6);
 }
 
 }  // namespace
