@@ -10,6 +10,7 @@
 #include "core/base/rng.h"
 #include "core/image/filter.h"
 #include "core/math/color.h"
+#include "core/math/statistics.h"
 #include "core/method/light_integrals.h"
 #include "core/render/deferred.h"
 
@@ -123,18 +124,11 @@ MaterialMaps assemble(const FrameView& view, const GBuffer& g, std::span<const S
 }
 
 // Takes weight from pixels that get little light compared with the frame's median (methods 5.7).
-Planes weightsByLight(const std::vector<WeightedPixel>& pixels, float median, const FrameView& view) {
+Planes weightsByLight(const std::vector<WeightedPixel>& pixels, float usual, const FrameView& view) {
   Planes weights(view.camera.width, view.camera.height, 1);
   for (const WeightedPixel& p : pixels)
-    weights.values[p.index] = p.weight * smoothStep(kDarkShare, 3 * kDarkShare, p.light / median);
+    weights.values[p.index] = p.weight * smoothStep(kDarkShare, 3 * kDarkShare, p.light / usual);
   return weights;
-}
-
-float medianOf(std::vector<float> light) {
-  if (light.empty()) return 0;
-  const auto middle = light.begin() + static_cast<std::ptrdiff_t>(light.size() / 2);
-  std::nth_element(light.begin(), middle, light.end());
-  return std::max(*middle, 1e-12f);
 }
 
 }  // namespace
@@ -213,10 +207,10 @@ void bakeMaterials(std::span<const FrameView> views, const GaussianCloud& cloud,
     take(v, assemble(views[v], g, points, images, options.multibounce, lit));
     if (points.empty()) logWarning("camera {}: no surface was found, its picture is not used", views[v].name);
   }
-  const float median = medianOf(std::move(lit.light));
+  const float usual = std::max(median(std::move(lit.light)), 1e-12f);
   for (std::size_t v = 0; v < views.size(); ++v) {
     progress.check();
-    take(v, {views[v].camera, {}, {}, {}, weightsByLight(lit.weighted[v], median, views[v])});
+    take(v, {views[v].camera, {}, {}, {}, weightsByLight(lit.weighted[v], usual, views[v])});
   }
 }
 

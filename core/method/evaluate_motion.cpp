@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/knn.h"
+#include "core/math/statistics.h"
 
 namespace beam {
 namespace {
@@ -102,13 +103,8 @@ double changeOfDegree0(const ShBlock& before, const ShBlock& now, const std::vec
 }  // namespace
 
 Spread spreadOf(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-    return values[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return {at(0.5), at(0.95)};
+  const double middle = nearestRank(values, 0.5);
+  return {middle, nearestRank(std::move(values), 0.95)};
 }
 
 std::vector<std::uint32_t> nearestPoints(const GaussianCloud& first, const TrueSkin& truth, double most_m) {

@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/math/statistics.h"
+
 namespace beam {
 namespace {
 
@@ -17,13 +19,6 @@ constexpr double kSmallest = 1e-4;
 constexpr double kStill = 0.5;  // mean squared difference of thumbnails, grey levels: noise, no motion
 
 using CameraScores = std::vector<const ViewScore*>;  // one a frame; null: none
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
 
 std::map<std::string, CameraScores> byCamera(std::span<const ScoredFrame> frames) {
   std::map<std::string, CameraScores> cameras;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/math/statistics.h"
 #include "core/method/compare_outlines.h"
 
 namespace beam {
@@ -24,16 +25,6 @@ constexpr double kFineShare = 0.01;  // of the subject's size, the square root o
 constexpr int kCoarser = 4;
 constexpr int kFewestSamples = 32;      // gradients that a mean needs
 constexpr double kLeastContrast = 1.0;  // mean coarse gradient, grey levels: below there is no detail to lose
-
-// The value that `share` of the others lie below.
-double quantile(std::vector<double> v, double share) {
-  if (v.empty()) return 0;
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size()));
-  std::nth_element(v.begin(), at, v.end());
-  return *at;
-}
-
-double median(std::vector<double> v) { return quantile(std::move(v), 0.5); }
 
 double lumaOf(u8vec3 p) { return 0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z; }
 

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/base/parallel.h"
+#include "core/math/statistics.h"
 
 namespace beam {
 namespace {
@@ -136,9 +138,7 @@ int VisualHull::halvings(const dvec3& center, double half, double share) const {
     ratios.push_back(radius_px / std::max(1.0, share * std::sqrt(area)));
   }
   if (ratios.empty()) return 0;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return std::clamp(static_cast<int>(std::ceil(std::log2(*middle))), 0, kMostHalvings);
+  return std::clamp(static_cast<int>(std::ceil(std::log2(median(std::move(ratios))))), 0, kMostHalvings);
 }
 
 VisualHull::Cells VisualHull::cellsDeniedBy(int most_denials, double share, const Progress& progress) const {

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/knn.h"
+#include "core/math/statistics.h"
 
 namespace beam {
 namespace {
@@ -86,9 +87,7 @@ double spacingOf(std::span<const vec3> points) {
     for (std::size_t i = begin; i < end; ++i)
       distance[i] = std::sqrt(tree.nearest(points[i], kEighth + 1).back().squared_distance);
   });
-  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
-  std::nth_element(distance.begin(), middle, distance.end());
-  return distance.empty() ? 0 : *middle / on_lattice;
+  return median(std::move(distance)) / on_lattice;
 }
 
 Anchors surfaceGraph(std::span<const vec3> points, double reach) {

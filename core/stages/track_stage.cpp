@@ -4,6 +4,7 @@
 #include "core/base/log.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/math/statistics.h"
 #include "core/method/fit_surface.h"
 #include "core/method/track_joints.h"
 #include "core/pipeline/frame_result.h"
@@ -127,9 +128,7 @@ class TrackStage final : public StageOf<TrackOptions> {
   static double motionOf(std::span<const vec3> from, std::span<const vec3> to) {
     std::vector<float> moved(from.size());
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = glm::length(to[i] - from[i]);
-    const auto at = moved.begin() + static_cast<std::ptrdiff_t>(moved.size() * 95 / 100);
-    std::nth_element(moved.begin(), at, moved.end());
-    return *at;
+    return quantile(std::move(moved), 0.95);
   }
 };
 
