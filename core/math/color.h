@@ -24,6 +24,8 @@ inline float srgbSlope(float c) {
 inline vec3 linearFromSrgb(vec3 c) { return {linearFromSrgb(c.x), linearFromSrgb(c.y), linearFromSrgb(c.z)}; }
 inline vec3 srgbFromLinear(vec3 c) { return {srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z)}; }
 inline float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+// The same weights on an encoded pixel, in grey levels.
+inline double luma(u8vec3 p) { return 0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z; }
 
 // [0, 1] as 0 to 255, rounded; beyond is clamped.
 inline std::uint8_t byteOf(float v) {

@@ -9,6 +9,7 @@
 #include "core/base/rng.h"
 #include "core/image/metrics.h"
 #include "core/math/knn.h"
+#include "core/scene/frame_views.h"
 
 namespace beam {
 namespace {
@@ -98,7 +99,7 @@ PictureScore scorePicture(const Planes& prediction, const Planes& truth, const I
   std::size_t count = 0;
   for (int c = 0; c < truth.channels; ++c) {
     for (std::size_t i = 0; i < truth.planeSize(); ++i) {
-      if (mask.pixels[i] <= 127) continue;
+      if (mask.pixels[i] < kInside) continue;
       const double d = static_cast<double>(prediction.plane(c)[i]) - truth.plane(c)[i];
       sum += d * d;
       ++count;
@@ -114,7 +115,7 @@ double normalErrorDeg(const Planes& prediction, const Planes& truth, const Image
   std::size_t count = 0;
   for (std::size_t i = 0; i < truth.planeSize(); ++i) {
     const dvec3 g(truth.plane(0)[i], truth.plane(1)[i], truth.plane(2)[i]);
-    if (mask.pixels[i] <= 127 || glm::length(g) <= 0.5) continue;
+    if (mask.pixels[i] < kInside || glm::length(g) <= 0.5) continue;
     const dvec3 p(prediction.plane(0)[i], prediction.plane(1)[i], prediction.plane(2)[i]);
     const double length = glm::length(p);
     const double cosine =
@@ -131,7 +132,7 @@ double depthErrorMm(const Planes& prediction, const Planes& truth, const Image<s
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < truth.planeSize(); ++i) {
-    if (mask.pixels[i] <= 127 || truth.values[i] <= 0) continue;
+    if (mask.pixels[i] < kInside || truth.values[i] <= 0) continue;
     sum += std::abs(static_cast<double>(prediction.values[i]) - truth.values[i]);
     ++count;
   }

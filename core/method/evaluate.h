@@ -16,14 +16,15 @@ struct PictureScore {
   double psnr = 0, ssim = 0, psnr_mask = 0;
 };
 
-// Values in [0, 1] in the compared space; mask > 127 is inside. Of no meaning when a stop is requested.
+// Values in [0, 1] in the compared space; a mask is inside from kInside on. Of no meaning when a stop is
+// requested.
 PictureScore scorePicture(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask,
                           const Progress& progress = Progress());
 
-// Mean angle in degrees where mask > 127 and the truth has a normal; a missing prediction counts 90.
+// Mean angle in degrees inside the mask where the truth has a normal; a missing prediction counts 90.
 double normalErrorDeg(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask);
 
-// Mean absolute error in millimetres where mask > 127 and the truth has a depth.
+// Mean absolute error in millimetres inside the mask where the truth has a depth.
 double depthErrorMm(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask);
 
 struct Chamfer {

@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/knn.h"
+#include "core/math/sh.h"
 #include "core/math/statistics.h"
 
 namespace beam {
@@ -88,12 +89,11 @@ double meanChange(const vec3& a, const vec3& b) {
 }
 
 double changeOfDegree0(const ShBlock& before, const ShBlock& now, const std::vector<float>& opacity) {
-  constexpr double kBasis0 = 0.28209479177387814;  // 1 / (2 sqrt(pi))
   double sum = 0, weight = 0;
   for (std::size_t i = 0; i < opacity.size(); ++i) {
     double change = 0;
     for (int c = 0; c < 3; ++c)
-      change += kBasis0 * std::abs(static_cast<double>(now.of(i)[c]) - before.of(i)[c]) / 3;
+      change += kShC0 * std::abs(static_cast<double>(now.of(i)[c]) - before.of(i)[c]) / 3;
     sum += opacity[i] * change;
     weight += opacity[i];
   }

@@ -11,6 +11,7 @@
 #include "core/math/brdf.h"
 #include "core/math/color.h"
 #include "core/math/sampling.h"
+#include "core/scene/frame_views.h"
 
 namespace beam {
 namespace {
@@ -141,7 +142,7 @@ std::vector<SurfacePoint> surfacePoints(const GBuffer& g, const Camera& camera,
   std::vector<SurfacePoint> points;
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
-      if (edges(x, y) || !(g.alpha(x, y) > 0.9f) || (!mask.empty() && mask(x, y) <= 127)) continue;
+      if (edges(x, y) || !(g.alpha(x, y) > 0.9f) || (!mask.empty() && mask(x, y) < kInside)) continue;
       const dvec3 ray = rayOf(camera.intrinsics, {x + 0.5, y + 0.5});
       const vec3 to_eye(glm::normalize(world_from_camera.rotation * -ray));
       if (!(glm::dot(g.normal_world(x, y), to_eye) > 0.05f)) continue;

@@ -28,7 +28,7 @@ Planes planesOf(const Image<vec3>& image) {
 Image<float> lumaOf(const Planes& p) {
   Image<float> luma(p.width, p.height);
   for (std::size_t i = 0; i < luma.pixels.size(); ++i) {
-    luma.pixels[i] = 0.2126f * p.plane(0)[i] + 0.7152f * p.plane(1)[i] + 0.0722f * p.plane(2)[i];
+    luma.pixels[i] = luminance({p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]});
   }
   return luma;
 }
@@ -36,7 +36,7 @@ Image<float> lumaOf(const Planes& p) {
 double meanInside(const Image<float>& luma, const Image<std::uint8_t>& mask) {
   double sum = 0, n = 0;
   for (std::size_t i = 0; i < luma.pixels.size(); ++i) {
-    if (mask.pixels[i] > 127) sum += luma.pixels[i], ++n;
+    if (mask.pixels[i] >= kInside) sum += luma.pixels[i], ++n;
   }
   return n > 0 ? sum / n : 0;
 }
@@ -46,7 +46,7 @@ double sharpnessInside(const Image<float>& luma, const Image<std::uint8_t>& mask
   double sum = 0, n = 0;
   for (int y = 1; y + 1 < luma.height; ++y) {
     for (int x = 1; x + 1 < luma.width; ++x) {
-      if (std::min({mask(x, y), mask(x - 1, y), mask(x + 1, y), mask(x, y - 1), mask(x, y + 1)}) <= 127)
+      if (std::min({mask(x, y), mask(x - 1, y), mask(x + 1, y), mask(x, y - 1), mask(x, y + 1)}) < kInside)
         continue;
       sum += std::abs(4 * luma(x, y) - luma(x - 1, y) - luma(x + 1, y) - luma(x, y - 1) - luma(x, y + 1));
       ++n;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/math/color.h"
 #include "core/math/statistics.h"
 #include "core/method/compare_outlines.h"
 
@@ -16,7 +17,6 @@ namespace beam {
 namespace {
 
 constexpr std::size_t kFewestKept = 3, kViewsPerLeftOut = 4;
-constexpr std::uint8_t kInside = 128;
 constexpr int kMostWrong = 2;  // cameras that deny one place together
 constexpr std::size_t kCandidates = 3;
 // The bright part is what one pixel in so many is brighter than; a small subject before black has few.
@@ -25,8 +25,6 @@ constexpr double kFineShare = 0.01;  // of the subject's size, the square root o
 constexpr int kCoarser = 4;
 constexpr int kFewestSamples = 32;      // gradients that a mean needs
 constexpr double kLeastContrast = 1.0;  // mean coarse gradient, grey levels: below there is no detail to lose
-
-double lumaOf(u8vec3 p) { return 0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z; }
 
 bool saysSomething(const Image<std::uint8_t>& mask) {
   return std::any_of(mask.pixels.begin(), mask.pixels.end(), [](std::uint8_t m) { return m >= kInside; });
@@ -38,7 +36,7 @@ double brightPart(const FrameView& v) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < v.photo.pixels.size(); ++i) {
     if (masked && v.mask.pixels[i] < kInside) continue;
-    ++histogram[static_cast<std::size_t>(std::lround(lumaOf(v.photo.pixels[i])))];
+    ++histogram[static_cast<std::size_t>(std::lround(luma(v.photo.pixels[i])))];
     ++count;
   }
   const std::size_t part = masked ? kBrightPart : kBrightPartOfAll;
@@ -59,8 +57,8 @@ double meanGradient(const FrameView& v) {
   for (int y = 1; y + 1 < v.photo.height; ++y) {
     for (int x = 1; x + 1 < v.photo.width; ++x) {
       if (!inside(x - 1, y) || !inside(x + 1, y) || !inside(x, y - 1) || !inside(x, y + 1)) continue;
-      sum += std::hypot(lumaOf(v.photo(x + 1, y)) - lumaOf(v.photo(x - 1, y)),
-                        lumaOf(v.photo(x, y + 1)) - lumaOf(v.photo(x, y - 1))) /
+      sum += std::hypot(luma(v.photo(x + 1, y)) - luma(v.photo(x - 1, y)),
+                        luma(v.photo(x, y + 1)) - luma(v.photo(x, y - 1))) /
              2;
       ++n;
     }

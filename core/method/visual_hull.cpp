@@ -12,7 +12,6 @@
 namespace beam {
 namespace {
 
-constexpr std::uint8_t kInside = 128;
 constexpr double kNearest_m = 0.01;
 constexpr int kMostHalvings = 9;  // 512 cells a side
 

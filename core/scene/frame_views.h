@@ -2,6 +2,7 @@
 // The photographs of one frame, loaded: what the method works on. 8-bit, so that 81 views stay in memory.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "core/scene/capture.h"
 
 namespace beam {
+
+inline constexpr std::uint8_t kInside = 128;  // a mask is inside from this value on
 
 struct FrameView {
   std::string name;
