@@ -2,7 +2,6 @@
 #include "core/method/fit_surface.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -93,7 +92,7 @@ class SurfaceTrainer {
 
   void run(int begin, int end, Progress& progress, const CloudPreview& preview) {
     progress.expect(end - begin);
-    auto shown = std::chrono::steady_clock::now();
+    TimedPreview shown(preview);
     const int first_cap = static_cast<int>(model_.size());
     for (int step = begin; step < end; ++step) {
       progress.step();
@@ -101,11 +100,7 @@ class SurfaceTrainer {
         model_.updateFilter(loss_.cameras(), static_cast<float>(options_.filter));
       trainOnce(step, step - begin + 1);
       if (!geometry_) changeCount(step, first_cap);
-      const auto now = std::chrono::steady_clock::now();
-      if (preview && now - shown > std::chrono::seconds(1)) {
-        preview(std::make_shared<GaussianCloud>(model_.cloud()));
-        shown = now;
-      }
+      shown.offer(model_);
     }
   }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/method/follow_surface.h"
 
-#include <chrono>
 #include <cmath>
 
 #include "core/math/quaternion.h"
@@ -42,16 +41,12 @@ class SkinFollower {
 
   FollowedSkin run(int begin, int end, Progress& progress, const CloudPreview& preview) {
     progress.expect(end - begin);
-    auto shown = std::chrono::steady_clock::now();
+    TimedPreview shown(preview);
     for (int step = begin; step < end; ++step) {
       progress.step();
       if ((step - begin) % kFilterEvery == 0) filterAtPose();
       trainOnce(step, step - begin + 1);
-      const auto now = std::chrono::steady_clock::now();
-      if (preview && now - shown > std::chrono::seconds(1)) {
-        preview(std::make_shared<GaussianCloud>(model_.cloud()));
-        shown = now;
-      }
+      shown.offer(model_);
     }
     filterAtPose();
     PoseGradient ignored(rest_.pose().size());
