@@ -85,10 +85,7 @@ class SurfaceTrainer {
   }
 
   // For a cloud whose values hold the filter already.
-  void takeFilterOut() {
-    model_.updateFilter(loss_.cameras(), static_cast<float>(options_.filter));
-    model_.unbakeFilter();
-  }
+  void takeFilterOut() { model_.takeFilterOut(loss_.cameras(), static_cast<float>(options_.filter)); }
 
   void run(int begin, int end, Progress& progress, const CloudPreview& preview) {
     progress.expect(end - begin);

@@ -34,7 +34,7 @@ class SkinFollower {
         rest_(start.rest_skin),
         extent_m_(sceneExtent(views)),
         pixel_m_(pixelAtSubject(loss_.cameras(), start.joints.position_m)) {
-    takeFilterOut(model_);
+    model_.takeFilterOut(loss_.cameras(), static_cast<float>(fit_.filter));
     model_.keepReference();
     if (geometry) startFrom(start.cloud);
   }
@@ -59,15 +59,10 @@ class SkinFollower {
  private:
   static constexpr int kFilterEvery = 100;
 
-  void takeFilterOut(GaussianModel& model) const {
-    model.updateFilter(loss_.cameras(), static_cast<float>(fit_.filter));
-    model.unbakeFilter();
-  }
-
   // The reference of E_temp stays that of the frame before.
   void startFrom(const GaussianCloud& cloud) {
     GaussianModel started(cloud);
-    takeFilterOut(started);
+    started.takeFilterOut(loss_.cameras(), static_cast<float>(fit_.filter));
     model_.takeAppearance(started);
   }
 

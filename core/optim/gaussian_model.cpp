@@ -87,7 +87,8 @@ void GaussianModel::updateFilter(std::span<const Camera> cameras, float strength
   }
 }
 
-void GaussianModel::unbakeFilter() {
+void GaussianModel::takeFilterOut(std::span<const Camera> cameras, float strength) {
+  updateFilter(cameras, strength);
   for (std::size_t i = 0; i < size(); ++i) {
     const float f = filter_[i];
     float keep = 1;

@@ -50,8 +50,8 @@ class GaussianModel {
   // see the Gaussian within 15 % of their borders; unseen Gaussians take the largest (methods 1.3). 0: no
   // filter.
   void updateFilter(std::span<const Camera> cameras, float strength);
-  // Takes the present filter out of the raw values: for a cloud that was made with the filter baked in.
-  void unbakeFilter();
+  // Takes that filter out of the raw values: for a cloud that was made with the filter baked in.
+  void takeFilterOut(std::span<const Camera> cameras, float strength);
 
   // The present raw appearance is what E_temp holds on to.
   void keepReference();

@@ -87,8 +87,7 @@ TEST(GaussianModel, UnbakingAFilterGivesThePhysicalValuesBack) {
   m.updateFilter(cameras, 0.3f);
   const GaussianCloud baked = m.cloud();
   GaussianModel again(baked);
-  again.updateFilter(cameras, 0.3f);
-  again.unbakeFilter();
+  again.takeFilterOut(cameras, 0.3f);
   again.activate();
   for (std::size_t i = 0; i < baked.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
