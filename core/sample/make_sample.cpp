@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/rng.h"
+#include "core/image/planes.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
@@ -93,21 +94,6 @@ Image<std::uint8_t> coverageBytes(const Image<float>& coverage) {
     out.pixels[i] = byteOf(coverage.pixels[i]);
   }
   return out;
-}
-
-Planes planesOf(const Image<vec3>& image, const dmat3& turn) {
-  Planes p(image.width, image.height, 3);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    const dvec3 v = turn * dvec3(image.pixels[i]);
-    for (int c = 0; c < 3; ++c) p.plane(c)[i] = static_cast<float>(v[c]);
-  }
-  return p;
-}
-
-Planes planesOf(const Image<float>& image) {
-  Planes p(image.width, image.height, 1);
-  p.values = image.pixels;
-  return p;
 }
 
 class SampleWriter {

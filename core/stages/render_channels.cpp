@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/image/planes.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/math/color.h"
@@ -27,21 +28,6 @@ Image<u8vec3> bytesOf(const Image<vec3>& image, bool encode) {
     for (int k = 0; k < 3; ++k) out.pixels[i][k] = byteOf(encode ? srgbFromLinear(c[k]) : c[k]);
   }
   return out;
-}
-
-Planes planesOf(const Image<float>& image) {
-  Planes p(image.width, image.height, 1);
-  p.values = image.pixels;
-  return p;
-}
-
-Planes planesOf(const Image<vec3>& image, const dmat3& rotation) {
-  Planes p(image.width, image.height, 3);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    const dvec3 v = rotation * dvec3(image.pixels[i]);
-    for (int c = 0; c < 3; ++c) p.plane(c)[i] = static_cast<float>(v[c]);
-  }
-  return p;
 }
 
 bool needsMaterials(const std::string& channel) {
