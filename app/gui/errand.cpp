@@ -129,10 +129,13 @@ void Errand::tick() {
   }
   if (!settled_since_.isValid()) settled_since_.start();
   if (static_cast<double>(settled_since_.elapsed()) >= kCalm_ms + 1000 * arguments_.after_s) {
-    if (!arguments_.curve.isEmpty() && !window_.timeline().chooseCurve(arguments_.curve)) {
-      return giveUp("there is no curve \"" + arguments_.curve + "\" (yet)");
+    if (!arguments_.curve.isEmpty()) {
+      if (!window_.timeline().chooseCurve(arguments_.curve))
+        return giveUp("there is no curve \"" + arguments_.curve + "\" (yet)");
+      arguments_.curve.clear();
+      arguments_.after_s = 0;
+      return settled_since_.invalidate();  // the docks make room for it first
     }
-    arguments_.curve.clear();
     if (!playing()) takePicture();
   }
 }

@@ -338,6 +338,21 @@ TEST_F(SolvedTimeline, OffersTheScoresOfTheTakeAsCurves) {
   EXPECT_EQ(curve->values[3] - curve->values[0], 3);
 }
 
+TEST_F(SolvedTimeline, HasRoomForTheCurveUnderManyLanes) {
+  TimelineLanes& lanes = window.timeline().lanes();
+  ASSERT_TRUE(window.timeline().chooseCurve("materials.fit.gaussians"));
+  auto many = std::make_shared<TakeSurvey>(*window.model().survey());
+  many->lanes.resize(7, many->lanes[0]);
+  lanes.setSurvey(many);
+  EXPECT_TRUE(waitFor(
+      [&] {
+        return lanes.height() >= lanes.sizeHint().height() &&
+               lanes.visibleRegion().boundingRect().height() == lanes.height();
+      },
+      3000))
+      << lanes.visibleRegion().boundingRect().height() << " of " << lanes.sizeHint().height();
+}
+
 TEST_F(SolvedTimeline, PlaysInTheRangeFromMemoryAndSaysTheRate) {
   window.player().setIn(1);
   window.player().setOut(4);
