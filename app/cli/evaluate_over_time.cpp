@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "app/cli/quality_history.h"
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/io/ply_file.h"
 #include "core/method/evaluate_motion.h"
 #include "core/pipeline/frame_result.h"
@@ -69,7 +71,7 @@ class MotionScorer {
     const bool follows = before_ && before_->frame.value + 1 == index.value;
     const bool tracked = follows && isTracked(before_->result.cloud, now->result.cloud);
     if (!tracked) startTake(*now);
-    if (follows && sameSkin(before_->skin, now->skin)) alongPoints(*now);
+    if (follows && sameSkin(before_->skin, *now)) alongPoints(*now);
     if (tracked) alongGaussians(*now);
     before_ = std::move(now);
   }
@@ -90,8 +92,16 @@ class MotionScorer {
     return m;
   }
 
-  static bool sameSkin(const std::optional<TrueSkin>& a, const std::optional<TrueSkin>& b) {
-    return a && b && a->position_m.size() == b->position_m.size();
+  bool sameSkin(const std::optional<TrueSkin>& before, const Moment& now) {
+    if (!before || !now.skin) return false;
+    const std::size_t a = before->position_m.size(), b = now.skin->position_m.size();
+    if (a != b && !std::exchange(warned_, true)) {
+      logWarning(
+          "the true tracks have {} points in frame {} and {} before it: expected the same in all "
+          "frames; drift and flicker between such frames are left out",
+          b, name(now.frame), a);
+    }
+    return a == b;
   }
 
   void startTake(const Moment& m) {
@@ -106,7 +116,7 @@ class MotionScorer {
     s["flicker.gaussian_radiance"] = radianceFlicker(before_->result.cloud, now.result.cloud);
     const auto &a = before_->result.materials, &b = now.result.materials;
     if (a && b) s["flicker.gaussian_base_color"] = baseColorFlicker(before_->result.cloud, *a, *b);
-    if (nearest_.empty() || !sameSkin(first_skin_, now.skin)) return;
+    if (nearest_.empty() || !sameSkin(first_skin_, now)) return;
     const Spread drift = drift_mm(first_, now.result.cloud, *first_skin_, *now.skin, nearest_);
     s["drift.median_mm"] = drift.median;
     s["drift.p95_mm"] = drift.p95;
@@ -140,6 +150,7 @@ class MotionScorer {
   GaussianCloud first_;
   std::optional<TrueSkin> first_skin_;
   std::vector<std::uint32_t> nearest_;
+  bool warned_ = false;  // of tracks that do not match
 };
 
 // Means over the cameras; scores of the whole frame as they are.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/optim/anchors.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -69,12 +71,22 @@ Anchors anchored(std::span<const vec3> points, std::span<const vec3> targets, in
 
 Anchors anchorTo(std::span<const vec3> points, std::span<const vec3> targets, int count, float length_m,
                  float apart_m) {
-  if (targets.empty()) throw Error(Error::Kind::Data, "there is no joint to hang the Gaussians on");
+  if (targets.empty()) {
+    throw Error(Error::Kind::Data,
+                fmt::format("found no joint to hang {} Gaussians on; check the masks, then "
+                            "raise track.joints and run Track again",
+                            points.size()));
+  }
   return anchored(points, targets, count, length_m, apart_m, false);
 }
 
 Anchors neighborGraph(std::span<const vec3> points, int count, float length_m, float apart_m) {
-  if (points.size() < 2) throw Error(Error::Kind::Data, "a graph of neighbours needs two Gaussians or more");
+  if (points.size() < 2) {
+    throw Error(Error::Kind::Data, fmt::format("a graph of neighbours needs two Gaussians or more, found {}; "
+                                               "check masks and calibration, then raise surface.cap or "
+                                               "track.joints",
+                                               points.size()));
+  }
   return anchored(points, points, count, length_m, apart_m, true);
 }
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
+#include "core/stages/unclear_file.h"
 
 namespace beam {
 namespace {
@@ -94,10 +94,10 @@ std::vector<ViewScore> readScores(const fs::path& folder) {
     for (const Json& view : j.at("views")) scores.push_back(scoreOf(view));
     const Image<std::uint8_t> sheet = readMask(folder / kThumbsFile);
     if (sheet.width != 2 * kThumbSide_px || sheet.height < kThumbSide_px * static_cast<int>(scores.size())) {
-      throw Error(Error::Kind::Data,
-                  fmt::format("\"{}\": expected a pair of thumbnails for each of {} cameras, found {} x {} "
-                              "pixels",
-                              (folder / kThumbsFile).string(), scores.size(), sheet.width, sheet.height));
+      throw unclearFile(
+          folder / kThumbsFile,
+          fmt::format("expected a pair of thumbnails for each of {} cameras, found {} x {} pixels",
+                      scores.size(), sheet.width, sheet.height));
     }
     for (std::size_t i = 0; i < scores.size(); ++i) {
       const int y0 = static_cast<int>(i) * kThumbSide_px;
@@ -106,7 +106,7 @@ std::vector<ViewScore> readScores(const fs::path& folder) {
     }
     return scores;
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\" cannot be understood: {}", file.string(), e.what()));
+    throw unclearFile(file, e.what());
   }
 }
 

@@ -12,7 +12,7 @@ namespace beam {
 
 // `downscale` says at which resolution was scored.
 void writeScores(const std::filesystem::path& folder, const std::vector<ViewScore>& scores, int downscale);
-// Throws Error{Data} naming the file that cannot be understood.
+// Throws Error{Data} naming the file that cannot be understood, and what to do.
 std::vector<ViewScore> readScores(const std::filesystem::path& folder);
 
 }  // namespace beam

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/io/file.h"
+#include "core/stages/unclear_file.h"
 
 namespace beam {
 namespace {
@@ -63,18 +64,15 @@ void writeScreening(const fs::path& folder, const FrameScreening& screening,
 
 FrameScreening readScreening(const fs::path& folder) {
   const fs::path file = folder / kScreeningFile;
-  const auto unclear = [&](const char* why) {
-    return Error(Error::Kind::Data, fmt::format("\"{}\" cannot be understood: {}", file.string(), why));
-  };
   const std::string text = readTextFile(file);
   try {
     const Json j = Json::parse(text);
     return {j.at("enabled").get<bool>(), j.at("cameras").get<std::size_t>(), viewsOf(j.at("left_out")),
             viewsOf(j.at("suspects"))};
   } catch (const nlohmann::json::exception& e) {
-    throw unclear(e.what());
+    throw unclearFile(file, e.what());
   } catch (const Error& e) {
-    throw unclear(e.what());
+    throw unclearFile(file, e.what());
   }
 }
 

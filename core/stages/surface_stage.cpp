@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "core/base/error.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
@@ -97,7 +99,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     const std::vector<FrameView>& views = lent.all();
     if (!c.later()) {
       const PointCloud seeds = readPointsPly(c.input("surface.seed") / kSeedsFile);
-      return keep(c, fitAppearance(views, seeds, options_.fit, c.device, c.progress, c.preview));
+      return keep(c, fitAppearance(views, seeds, options_.fit, c.device, c.progress, c.preview),
+                  seeds.position_m.size());
     }
     if (restarted(c)) return fitAnew(c, views);
     const Carried in = carried(c);
@@ -114,7 +117,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     const std::filesystem::path& fitted = c.input("surface.fit");
     GaussianCloud cloud = readSplatPly(fitted / kCloudFile).cloud;
     if (!c.later() || restarted(c)) {
-      return keep(c, refineGeometry(views, cloud, options_.fit, c.device, c.progress, c.preview));
+      return keep(c, refineGeometry(views, cloud, options_.fit, c.device, c.progress, c.preview),
+                  cloud.size());
     }
     const Carried in = carried(c);
     const CarriedSkin start{std::move(cloud), readPosePly(fitted / kRestPoseFile),
@@ -130,7 +134,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     Progress seeding = c.progress.part(0.05, "seeding"), fitting = c.progress.part(0.95, "fitting");
     const PointCloud seeds =
         seedPoints(views, c.capture.seed_points, seedCount(), options_.fit.seed, seeding);
-    keep(c, fitAppearance(views, seeds, options_.fit, c.device, fitting, c.preview));
+    keep(c, fitAppearance(views, seeds, options_.fit, c.device, fitting, c.preview), seeds.position_m.size());
   }
 
   struct Carried {
@@ -181,16 +185,22 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
   }
 
   // Nothing that is not a number gets onto the disk.
-  static void keep(StepContext& c, const GaussianCloud& cloud) {
-    if (cloud.size() == 0)
-      throw Error(Error::Kind::Data, "no Gaussians are left; check masks and calibration");
+  static void keep(StepContext& c, const GaussianCloud& cloud, std::size_t before) {
+    if (cloud.size() == 0) {
+      throw Error(
+          Error::Kind::Data,
+          fmt::format("none of {} Gaussians is left in frame {}: check its masks and the calibration, "
+                      "which say that there is nothing where the cameras look; where both are right, "
+                      "raise surface.iterations or surface.cap",
+                      before, c.capture.frames[static_cast<std::size_t>(c.frame.value)]));
+    }
     validate(cloud);
     writeSplatPly(c.folder / kCloudFile, cloud, nullptr);
     c.scores["gaussians"] = static_cast<double>(cloud.size());
   }
 
   static void keepSkin(StepContext& c, const FollowedSkin& skin) {
-    keep(c, skin.cloud);
+    keep(c, skin.cloud, skin.rest_skin.size());
     writePosePly(c.folder / kRestPoseFile, skin.rest_skin);
     writePosePly(c.folder / kJointPoseFile, skin.joints);
     c.scores["e_smooth"] = skin.smooth_m2;

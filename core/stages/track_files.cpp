@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/stages/track_files.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/io/file.h"
+#include "core/stages/unclear_file.h"
 
 namespace beam {
 namespace {
@@ -27,7 +25,7 @@ TrackNote readTrackNote(const std::filesystem::path& folder) {
     const nlohmann::json json = nlohmann::json::parse(readTextFile(file));
     return {json.at("restarted").get<bool>(), json.at("reference_residual").get<double>()};
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\" cannot be understood: {}", file.string(), e.what()));
+    throw unclearFile(file, e.what());
   }
 }
 
