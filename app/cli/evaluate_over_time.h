@@ -16,9 +16,7 @@ namespace beam {
 // and, where `truth` (may be null) has gt/tracks/<frame>.ply (x y z nx ny nz, metres, the capture's axes, the
 // same points in all frames):
 //   "drift.median_mm", "drift.p95_mm"            against the first frame of the take
-//   "flicker.radiance", "flicker.base_color"     in rendered maps of the test cameras, along the true points;
-//   mean
-//                                                over cameras
+//   "flicker.radiance", "flicker.base_color"     along the true points in maps of the test cameras, mean
 // A take is a run of neighbouring frames that are tracked.
 void scoreMotion(const Project& project, const std::vector<FrameIndex>& frames, const GroundTruth* truth,
                  ComputeDevice& device, Progress& progress, PictureScores& each);

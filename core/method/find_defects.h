@@ -26,9 +26,9 @@ struct Defect {
   DefectKind kind = DefectKind::Missing;
   std::string camera;
   std::vector<std::string> frames;  // in order
-  double figure =
-      0;  // Black: luma; Blurred: share of the usual sharpness, Exposure: factor;
-          // Late: frames (negative: early; of a training camera a lower bound); Missing, Frozen: count
+  // Black: luma; Blurred: share of the usual sharpness; Exposure: factor; Late: frames (negative: early; of a
+  // training camera a lower bound); Missing, Frozen: count.
+  double figure = 0;
   std::string text;  // a sentence with the figure, and what to do
   // Mean psnr in dB of the training views of these frames, with and without this camera; equal when the
   // camera has no scored picture there or nobody else has.

@@ -15,8 +15,8 @@ namespace beam {
 // Of frames that follow another in a take.
 struct LaterMaterialsOptions {
   double memory_frames = 4;  // linear: what the frame before counts for, in frames' evidence
-  double occlusion_memory_frames =
-      0.4;                        // linear: the same of AO, which really changes: a tenth (methods 5.10)
+  // linear: the same of AO, which really changes: a tenth (methods 5.10)
+  double occlusion_memory_frames = 0.4;
   double outlier = 0.1;           // linear: contradiction that halves and more the memory, sRGB
   double regularization = 0.1;    // linear: on the view-dependent coefficients
   int linear_iterations = 12;     // the start is near

@@ -167,27 +167,9 @@ class SurfaceTrainer {
 
 }  // namespace
 
-void describe(Fields& f, FitSurfaceOptions& o) {
-  f.field(
-      {.name = "iterations",
-       .label = "Iterations",
-       .help =
-           "Optimiser steps of a frame in all; the paper's schedule takes 15,000 + 15,000 for a lone frame.",
-       .min = 10,
-       .max = 1e6},
-      o.iterations);
-  f.field({.name = "refine_fraction",
-           .label = "Share with normals",
-           .help = "Share of the steps that also follow E_normal, at the end.",
-           .min = 0,
-           .max = 1},
-          o.refine_fraction);
-  f.field({.name = "cap",
-           .label = "Gaussians",
-           .help = "Most Gaussians of a frame (BEAM fig. 8: about 140,000).",
-           .min = 100,
-           .max = 4e6},
-          o.cap);
+namespace {
+
+void describeAdvanced(Fields& f, FitSurfaceOptions& o) {
   f.field({.name = "seed",
            .label = "Seed",
            .help = "Of all random numbers.",
@@ -272,6 +254,32 @@ void describe(Fields& f, FitSurfaceOptions& o) {
            .max = 1,
            .advanced = true},
           o.scale_regularizer);
+}
+
+}  // namespace
+
+void describe(Fields& f, FitSurfaceOptions& o) {
+  f.field(
+      {.name = "iterations",
+       .label = "Iterations",
+       .help =
+           "Optimiser steps of a frame in all; the paper's schedule takes 15,000 + 15,000 for a lone frame.",
+       .min = 10,
+       .max = 1e6},
+      o.iterations);
+  f.field({.name = "refine_fraction",
+           .label = "Share with normals",
+           .help = "Share of the steps that also follow E_normal, at the end.",
+           .min = 0,
+           .max = 1},
+          o.refine_fraction);
+  f.field({.name = "cap",
+           .label = "Gaussians",
+           .help = "Most Gaussians of a frame (BEAM fig. 8: about 140,000).",
+           .min = 100,
+           .max = 4e6},
+          o.cap);
+  describeAdvanced(f, o);
   f.group("refine", [&] {
     f.field({.name = "normal_weight",
              .label = "Normal weight",

@@ -168,44 +168,9 @@ FollowedSkin followGeometry(std::span<const FrameView> views, const FollowInput&
       .run(refineStart(options), options.iterations, progress, preview);
 }
 
-void describe(Fields& f, FollowSurfaceOptions& o) {
-  f.field({.name = "iterations",
-           .label = "Iterations, later frames",
-           .help = "Optimiser steps of a frame that follows another; the paper takes 7,000 + 5,000.",
-           .min = 2,
-           .max = 1e6},
-          o.iterations);
-  f.field({.name = "refine_fraction",
-           .label = "Share with normals",
-           .help = "Share of these steps that also follow E_normal, at the end.",
-           .min = 0,
-           .max = 1},
-          o.refine_fraction);
-  f.field({.name = "smooth_weight",
-           .label = "Smoothness",
-           .help = "lambda of E_smooth: neighbours on the skin move alike (BEAM 3.1: 0.001).",
-           .min = 0,
-           .max = 100},
-          o.smooth_weight);
-  f.field({.name = "rest_weight",
-           .label = "Memory of the shape",
-           .help = "Weight of the same energy against the skin of the first frame; 0 is the paper's way.",
-           .min = 0,
-           .max = 100},
-          o.rest_weight);
-  f.field({.name = "temporal_weight",
-           .label = "Steadiness",
-           .help = "lambda of E_temp: appearance stays that of the frame before (BEAM 3.1: 5e-5).",
-           .min = 0,
-           .max = 100},
-          o.temporal_weight);
-  f.field(
-      {
-          .name = "residual",
-          .label = "Free the skin",
-          .help = "Lets each Gaussian leave its joints a little while E_normal acts; off is the paper's way.",
-      },
-      o.residual);
+namespace {
+
+void describeAdvanced(Fields& f, FollowSurfaceOptions& o) {
   f.field({.name = "residual_weight",
            .label = "Pull of the residual",
            .help = "Ties what a Gaussian left its joints by to the frame before.",
@@ -262,6 +227,49 @@ void describe(Fields& f, FollowSurfaceOptions& o) {
            .max = 1,
            .advanced = true},
           o.color_rate);
+}
+
+}  // namespace
+
+void describe(Fields& f, FollowSurfaceOptions& o) {
+  f.field({.name = "iterations",
+           .label = "Iterations, later frames",
+           .help = "Optimiser steps of a frame that follows another; the paper takes 7,000 + 5,000.",
+           .min = 2,
+           .max = 1e6},
+          o.iterations);
+  f.field({.name = "refine_fraction",
+           .label = "Share with normals",
+           .help = "Share of these steps that also follow E_normal, at the end.",
+           .min = 0,
+           .max = 1},
+          o.refine_fraction);
+  f.field({.name = "smooth_weight",
+           .label = "Smoothness",
+           .help = "lambda of E_smooth: neighbours on the skin move alike (BEAM 3.1: 0.001).",
+           .min = 0,
+           .max = 100},
+          o.smooth_weight);
+  f.field({.name = "rest_weight",
+           .label = "Memory of the shape",
+           .help = "Weight of the same energy against the skin of the first frame; 0 is the paper's way.",
+           .min = 0,
+           .max = 100},
+          o.rest_weight);
+  f.field({.name = "temporal_weight",
+           .label = "Steadiness",
+           .help = "lambda of E_temp: appearance stays that of the frame before (BEAM 3.1: 5e-5).",
+           .min = 0,
+           .max = 100},
+          o.temporal_weight);
+  f.field(
+      {
+          .name = "residual",
+          .label = "Free the skin",
+          .help = "Lets each Gaussian leave its joints a little while E_normal acts; off is the paper's way.",
+      },
+      o.residual);
+  describeAdvanced(f, o);
 }
 
 }  // namespace beam

@@ -327,6 +327,8 @@ double jointResidual(std::span<const FrameView> views, const GaussianCloud& join
   return LevelView(views, 0, joints, mask_weight, device).lossOfAll(poseOf(joints), progress);
 }
 
+static void describeAdvanced(Fields& f, TrackJointsOptions& o);
+
 void describe(Fields& f, TrackJointsOptions& o) {
   f.field({.name = "joints",
            .label = "Joints",
@@ -365,6 +367,10 @@ void describe(Fields& f, TrackJointsOptions& o) {
            .min = 0,
            .max = 100},
           o.rest_weight);
+  describeAdvanced(f, o);
+}
+
+static void describeAdvanced(Fields& f, TrackJointsOptions& o) {
   f.field({.name = "rigid_spacings",
            .label = "Reach of the graph",
            .help = "Length of the graph's weights in spacings of the joints (0.02 m for 15,000).",
