@@ -71,12 +71,14 @@ struct JointSource::Memory {
   std::map<std::int32_t, std::pair<Digest, FrameJoints>> joints;  // by frame, with the survey's stamp
   std::shared_ptr<const GaussianCloud> bound_cloud;
   std::shared_ptr<const Anchors> bound;
+  std::shared_ptr<const std::vector<float>> influence;  // told last, of `picked`
+  int picked = -1;
 };
 
 JointSource::JointSource(const ProjectModel& model, QObject* parent)
     : QObject(parent), model_(model), memory_(std::make_shared<Memory>()) {}
 
-JointsShown JointSource::answer(const Wish& wish, Memory& memory) {
+JointsShown JointSource::trailsAt(const Wish& wish, Memory& memory) {
   JointsShown shown;
   const SurveyLane* lane = trackLane(*wish.survey);
   if (!lane) return shown;  // this program tracks nothing
@@ -109,15 +111,19 @@ JointsShown JointSource::answer(const Wish& wish, Memory& memory) {
   std::erase_if(memory.joints, [&](const auto& known) {
     return std::abs(known.first - wish.frame.value) > kTrailFrames * take.step;
   });
-  if (wish.picked < 0 || wish.picked >= static_cast<int>(shown.trails.back().size()) || !wish.cloud)
-    return shown;
+  return shown;
+}
+
+std::shared_ptr<const std::vector<float>> JointSource::influenceAt(const Wish& wish, Memory& memory) {
   if (memory.bound_cloud != wish.cloud) {
-    memory.bound = readBinding(project, wish.frame, *wish.cloud);
+    memory.bound = readBinding(*memory.project, wish.frame, *wish.cloud);
     memory.bound_cloud = wish.cloud;
   }
-  if (memory.bound)
-    shown.influence = std::make_shared<const std::vector<float>>(influenceOf(*memory.bound, wish.picked));
-  return shown;
+  memory.picked = wish.picked;
+  memory.influence = memory.bound
+                         ? std::make_shared<const std::vector<float>>(influenceOf(*memory.bound, wish.picked))
+                         : nullptr;
+  return memory.influence;
 }
 
 void JointSource::pick(int joint) {
@@ -136,20 +142,32 @@ void JointSource::refresh() {
   const Wish wish{model_.project(), model_.survey(), model_.frame(), picked_, model_.values().cloud};
   worker_.submit([this, wish, ticket, memory = memory_] {
     JointsShown shown;
+    const auto tell = [&](bool last) {
+      QMetaObject::invokeMethod(
+          this,
+          [this, shown, ticket, last] {
+            if (ticket != ticket_) return;
+            if (last) seen_ = ticket;
+            shown_ = shown;
+            Q_EMIT changed();
+          },
+          Qt::QueuedConnection);
+    };
     try {
-      shown = answer(wish, *memory);
+      shown = trailsAt(wish, *memory);
+      const int joints = shown.trails.empty() ? 0 : static_cast<int>(shown.trails.back().size());
+      if (wish.cloud && wish.picked >= 0 && wish.picked < joints) {
+        // Binding takes its time on a large skin: until then that of the frame before stays.
+        const bool same = memory->picked == wish.picked && memory->influence &&
+                          memory->influence->size() == wish.cloud->size();
+        if (same) shown.influence = memory->influence;
+        if (memory->bound_cloud != wish.cloud) tell(false);
+        shown.influence = influenceAt(wish, *memory);
+      }
     } catch (const std::exception& e) {  // the border of this thread: said in the view
       shown.hint = QString("the joints cannot be read: ") + e.what();
     }
-    QMetaObject::invokeMethod(
-        this,
-        [this, shown, ticket] {
-          if (ticket != ticket_) return;
-          seen_ = ticket;
-          shown_ = shown;
-          Q_EMIT changed();
-        },
-        Qt::QueuedConnection);
+    tell(true);
   });
 }
 

@@ -44,7 +44,8 @@ class JointSource final : public QObject {
  private:
   struct Wish;
   struct Memory;  // what the worker keeps between answers
-  static JointsShown answer(const Wish& wish, Memory& memory);
+  static JointsShown trailsAt(const Wish& wish, Memory& memory);
+  static std::shared_ptr<const std::vector<float>> influenceAt(const Wish& wish, Memory& memory);
 
   const ProjectModel& model_;
   int picked_ = -1;
