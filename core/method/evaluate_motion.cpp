@@ -2,6 +2,7 @@
 #include "core/method/evaluate_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -64,24 +65,41 @@ std::vector<dmat3> turnsOf(const TrueSkin& first, const TrueSkin& now) {
   return turns;
 }
 
-std::optional<std::size_t> pixelOf(const Camera& camera, const dvec3& in_camera) {
-  if (in_camera.z <= 0) return std::nullopt;
+// Where the view shows the point, by its pixel; nothing when it does not.
+std::optional<dvec2> seenAt(const GBuffer& g, const Camera& camera, const vec3& position, const vec3& normal,
+                            double most_m) {
+  const dvec3 in_camera = camera.camera_from_world * dvec3(position);
+  if (glm::dot(camera.camera_from_world.rotation * dvec3(normal), in_camera) >= 0 || in_camera.z <= 0)
+    return std::nullopt;
   const dvec2 p = project(camera.intrinsics, in_camera);
-  const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y));
-  if (p.x < 0 || p.y < 0 || x >= camera.width || y >= camera.height) return std::nullopt;
-  return static_cast<std::size_t>(y) * camera.width + x;
+  if (p.x < 0 || p.y < 0 || p.x >= camera.width || p.y >= camera.height) return std::nullopt;
+  const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
+  if (g.alpha(x, y) < kOpaque || std::abs(g.depth_m(x, y) - in_camera.z) > most_m) return std::nullopt;
+  return p;
 }
 
-// Where the view shows the point; nothing when it does not.
-std::optional<std::size_t> seenAt(const GBuffer& g, const Camera& camera, const vec3& position,
-                                  const vec3& normal, double most_m) {
-  const dvec3 in_camera = camera.camera_from_world * dvec3(position);
-  if (glm::dot(camera.camera_from_world.rotation * dvec3(normal), in_camera) >= 0) return std::nullopt;
-  const std::optional<std::size_t> pixel = pixelOf(camera, in_camera);
-  if (!pixel || g.alpha.pixels[*pixel] < kOpaque) return std::nullopt;
-  if (std::abs(g.depth_m.pixels[*pixel] - in_camera.z) > most_m) return std::nullopt;
-  return pixel;
-}
+// The four pixels around a position and what each counts for.
+struct Footprint {
+  std::array<std::size_t, 4> pixel = {};
+  std::array<float, 4> weight = {};
+
+  Footprint(const Camera& camera, const dvec2& p) {
+    const dvec2 corner = glm::floor(p - 0.5), part = p - 0.5 - corner;
+    for (int k = 0; k < 4; ++k) {
+      const int x = std::clamp(static_cast<int>(corner.x) + k % 2, 0, camera.width - 1);
+      const int y = std::clamp(static_cast<int>(corner.y) + k / 2, 0, camera.height - 1);
+      const double across = k % 2 ? part.x : 1 - part.x, down = k / 2 ? part.y : 1 - part.y;
+      pixel[static_cast<std::size_t>(k)] = static_cast<std::size_t>(y) * camera.width + x;
+      weight[static_cast<std::size_t>(k)] = static_cast<float>(across * down);
+    }
+  }
+  template <class T>
+  T of(const Image<T>& image) const {
+    T sum{};
+    for (std::size_t k = 0; k < 4; ++k) sum += weight[k] * image.pixels[pixel[k]];
+    return sum;
+  }
+};
 
 double meanChange(const vec3& a, const vec3& b) {
   const vec3 d = glm::abs(a - b);
@@ -161,12 +179,13 @@ SeenPoints seenPoints(const GBuffer& view, const Camera& camera, const TrueSkin&
   SeenPoints s{std::vector<std::uint8_t>(n), std::vector<vec3>(n),
                std::vector<vec3>(view.base_color.empty() ? 0 : n)};
   for (std::size_t i = 0; i < n; ++i) {
-    const auto pixel = seenAt(view, camera, truth.position_m[i], truth.normal[i], most_m);
-    if (!pixel) continue;
-    const float alpha = view.alpha.pixels[*pixel];
+    const auto at = seenAt(view, camera, truth.position_m[i], truth.normal[i], most_m);
+    if (!at) continue;
+    const Footprint around(camera, *at);
+    const float alpha = around.of(view.alpha);
     s.seen[i] = 1;
-    s.radiance[i] = view.radiance.pixels[*pixel] / alpha;
-    if (!s.base_color.empty()) s.base_color[i] = view.base_color.pixels[*pixel] / alpha;
+    s.radiance[i] = around.of(view.radiance) / alpha;
+    if (!s.base_color.empty()) s.base_color[i] = around.of(view.base_color) / alpha;
   }
   return s;
 }

@@ -49,7 +49,8 @@ double baseColorFlicker(const GaussianCloud& before, const Materials& before_mat
                         const Materials& now_materials);
 
 // What a view shows of the true points (front-facing, inside the picture, depth within `most_m` of the
-// rendered depth): the values at the nearest pixel, divided by alpha.
+// rendered depth at its pixel): the values there, between pixels, divided by alpha. (The nearest pixel is up
+// to half a pixel off in both frames: texture would count as flicker.)
 struct SeenPoints {
   std::vector<std::uint8_t> seen;  // a point each
   std::vector<vec3> radiance,

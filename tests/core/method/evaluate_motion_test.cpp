@@ -146,6 +146,22 @@ TEST(Flicker, OfAViewFollowsTheVisiblePointsAndForgivesCoverage) {
   EXPECT_NEAR(f->base_color, 0.03, 1e-6);
 }
 
+TEST(Flicker, OfAViewSeesNoneWhereATextureMovesByPartsOfAPixel) {
+  Wall before, now;
+  const auto paint = [](Wall& w, float shift) {
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x)
+        w.g.radiance(x, y) = 0.8f * vec3(0.01f * (static_cast<float>(x) + 0.5f - shift));
+    }
+  };
+  paint(before, 0);
+  paint(now, 0.4f);
+  for (vec3& p : now.points.position_m) p.x += 0.4f * 2.0f / 32;
+  const auto f = viewFlicker(before.shown(), now.shown());
+  ASSERT_TRUE(f);
+  EXPECT_NEAR(f->radiance, 0, 1e-5);
+}
+
 TEST(Flicker, OfAViewLeavesOutWhatIsHiddenOrTurnedAway) {
   const Wall before;
   Wall now;
