@@ -20,18 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* nameOf(UpAxis up) {
-  switch (up) {
-    case UpAxis::PlusY:
-      return "+Y";
-    case UpAxis::PlusZ:
-      return "+Z";
-    case UpAxis::MinusY:
-      return "-Y";
-  }
-  return "";
-}
-
 // What is repaired on the way is logged where it is repaired; the report lists it too.
 PanoramaCheck checkPanorama(const fs::path& path, std::vector<std::string>& warnings) {
   const int token = addLogSink([&](const LogRecord& r) {
@@ -88,7 +76,7 @@ CheckReport checkCapture(const fs::path& path, const ImportOptions& options) {
   CheckReport r;
   r.kind = "capture";
   r.layout = capture.layout;
-  r.up = nameOf(set.up);
+  r.up = toText(set.up);
   r.frames = set.frames;
   r.warnings = capture.warnings;
   r.seed_points = set.seed_points.position_m.size();

@@ -211,7 +211,7 @@ void FrameStore::prefetch(int downscale) {
   try {
     next_ = std::make_shared<Frame>(Frame{*expected_, downscale, std::vector<Slot>(capture_.views.size())});
     idle_ = false;
-    thread_ = std::jthread([this, frame = next_](std::stop_token stop) { decodeAhead(stop, *frame); });
+    thread_ = std::jthread([this, frame = next_](const std::stop_token& stop) { decodeAhead(stop, *frame); });
   } catch (const std::exception& e) {  // no memory or no thread: the frame is decoded when its turn comes
     logDebug("no pictures are decoded ahead: {}", e.what());
     idle_ = true;
@@ -220,7 +220,7 @@ void FrameStore::prefetch(int downscale) {
 }
 
 // One picture at a time: the other cores are the compute pool's.
-void FrameStore::decodeAhead(std::stop_token stop, Frame& frame) {
+void FrameStore::decodeAhead(const std::stop_token& stop, Frame& frame) {
   const Progress progress(stop);
   bool failed = false;
   try {

@@ -69,7 +69,7 @@ class FrameStore {
   void judge() const;
   LentViews lendPresent(const Wanted& wanted);
   void prefetch(int downscale);
-  void decodeAhead(std::stop_token stop, Frame& frame);
+  void decodeAhead(const std::stop_token& stop, Frame& frame);
   void awaitPrefetch(const Progress& progress);
   void dropNext();
 

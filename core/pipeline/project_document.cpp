@@ -106,18 +106,6 @@ void writeLocked(const fs::path& project, const ProjectDocument& document) {
 
 }  // namespace
 
-std::string toText(UpAxis up) {
-  switch (up) {
-    case UpAxis::PlusY:
-      return "+Y";
-    case UpAxis::PlusZ:
-      return "+Z";
-    case UpAxis::MinusY:
-      return "-Y";
-  }
-  return "+Y";
-}
-
 UpAxis parseUpAxis(std::string_view text) {
   if (text == "+Y" || text == "Y" || text == "y") return UpAxis::PlusY;
   if (text == "+Z" || text == "Z" || text == "z") return UpAxis::PlusZ;
@@ -226,7 +214,7 @@ void writeProjectDocument(const fs::path& project, ProjectDocument& document) {
 std::vector<SavedTake> changeSavedTakes(const fs::path& project, const ChangeTakes& change) {
   const fs::path file = project / "project.json";
   const auto read = [&] { return parseProjectDocument(readTextFile(file), file.string()); };
-  const std::vector<SavedTake> seen = read().takes;
+  std::vector<SavedTake> seen = read().takes;
   if (change(seen) == seen) return seen;
   const FileLock lock = lockProject(project);
   ProjectDocument document = read();

@@ -49,8 +49,7 @@ struct ProjectDocument {
   std::string unknown = "{}";                  // members of a later version, kept as they are (JSON)
 };
 
-// "+Y", "+Z", "-Y"; parseUpAxis throws Error{Usage}.
-std::string toText(UpAxis up);
+// As toText writes it; throws Error{Usage}.
 UpAxis parseUpAxis(std::string_view text);
 
 std::string toJson(const ProjectDocument& document);

@@ -3,6 +3,18 @@
 
 namespace beam {
 
+std::string toText(UpAxis up) {
+  switch (up) {
+    case UpAxis::PlusY:
+      return "+Y";
+    case UpAxis::PlusZ:
+      return "+Z";
+    case UpAxis::MinusY:
+      return "-Y";
+  }
+  return "+Y";
+}
+
 dmat3 worldFromCapture(UpAxis up) {
   switch (up) {
     case UpAxis::PlusY:

@@ -47,6 +47,7 @@ class FrameSource {
 };
 
 enum class UpAxis { PlusY, PlusZ, MinusY };
+std::string toText(UpAxis up);  // "+Y", "+Z", "-Y"
 
 struct CaptureSet {
   std::string name;

@@ -4,7 +4,6 @@
 
 #include <QApplication>
 #include <QComboBox>
-#include <QDeadlineTimer>
 #include <QLineEdit>
 
 #include <thread>
@@ -12,6 +11,7 @@
 #include "core/io/file.h"
 #include "tests/support/sphere_capture.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/wait_for.h"
 #include "ui/evaluation.h"
 #include "ui/field_editors.h"
 #include "ui/main_window.h"
@@ -28,15 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::TempDir;
-
-template <class Condition>
-bool waitFor(Condition&& condition, int patience_ms = 20000) {
-  for (QDeadlineTimer deadline(patience_ms); !deadline.hasExpired();) {
-    QApplication::processEvents(QEventLoop::AllEvents, 20);
-    if (condition()) return true;
-  }
-  return false;
-}
+using testing::waitFor;
 
 struct DemoOptions {
   int iterations = 100;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
-#include <QDeadlineTimer>
 #include <QKeyEvent>
 #include <QMouseEvent>
 
@@ -22,6 +21,7 @@
 #include "core/stages/track_files.h"
 #include "tests/support/splat_shapes.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/wait_for.h"
 #include "ui/main_window.h"
 #include "ui/timeline_panel.h"
 #include "viewers/gl/functions.h"
@@ -33,18 +33,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::TempDir;
+using testing::waitFor;
 
 constexpr int kFrames = 6;
 constexpr int kRestart = 4;  // the joints begin anew there
-
-template <class Condition>
-bool waitFor(Condition&& condition, int patience_ms = 20000) {
-  for (QDeadlineTimer deadline(patience_ms); !deadline.hasExpired();) {
-    QApplication::processEvents(QEventLoop::AllEvents, 20);
-    if (condition()) return true;
-  }
-  return false;
-}
 
 TakeSurvey surveyOf(std::vector<CellState> surface, std::vector<CellState> materials) {
   TakeSurvey survey;
