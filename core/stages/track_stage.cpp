@@ -24,7 +24,7 @@ struct TrackOptions {
   TrackJointsOptions joints;
   double restart_ratio = 4;  // ours (methods 3.8: off in the paper's code)
   int segment_frames = 50;   // reliability 3.5
-  int overlap = 2;           // ours
+  int overlap = 4;           // ours: with 2 the seam is 0.3 dB below the uncut take, with 4 it is gone
 };
 
 void describe(Fields& f, TrackOptions& o) {
