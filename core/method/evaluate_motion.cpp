@@ -40,10 +40,7 @@ dmat3 twistBetween(const dvec3& axis, std::span<const std::pair<dvec3, dvec3>> p
     sine += glm::dot(axis, glm::cross(from, to));
     cosine += glm::dot(from, to) - glm::dot(axis, from) * glm::dot(axis, to);
   }
-  const double length = std::hypot(sine, cosine);
-  if (length == 0) return dmat3(1.0);
-  const dmat3 k(0, axis.z, -axis.y, -axis.z, 0, axis.x, axis.y, -axis.x, 0);
-  return dmat3(1.0) + sine / length * k + (1 - cosine / length) * k * k;
+  return glm::mat3_cast(glm::angleAxis(std::atan2(sine, cosine), axis));
 }
 
 // How the skin around each true point turned.

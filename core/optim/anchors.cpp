@@ -95,7 +95,7 @@ double spacingOf(std::span<const vec3> points) {
   const double on_lattice = std::sqrt(2.0);
   const KdTree tree(points);
   std::vector<float> distance(points.size());
-  parallelFor(points.size(), 512, [&](std::size_t begin, std::size_t end) {
+  parallelFor(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       distance[i] = std::sqrt(tree.nearest(points[i], kEighth + 1).back().squared_distance);
   });

@@ -85,12 +85,10 @@ const std::map<std::string, std::string>& Project::parametersOf(const std::strin
 const std::vector<std::string>& Project::chainOf(const std::string& step) const {
   if (const auto known = memo_.chains.find(step); known != memo_.chains.end()) return known->second;
   const StageRegistry& stages = setup_->stages;
-  std::set<std::string> now, before;
+  std::set<std::string> now;
   std::vector<std::string> chain;
   stages.addWithReads(step, now);
-  for (const std::string& id : now) {
-    for (const std::string& previous : stages.step(id).later.previous) stages.addWithReads(previous, before);
-  }
+  const std::set<std::string> before = stages.readBefore(now);
   for (const StageInfo& info : stages.infos()) {
     for (const StepInfo& s : info.steps) {
       const std::string id = info.id + "." + s.id;

@@ -59,15 +59,6 @@ int setting(const Project& project, std::string_view name, int fallback) {
   return fallback;
 }
 
-// Steps of earlier frames that the steps of a later one read, with all that these read.
-std::set<std::string> stepsBefore(const StageRegistry& stages, const std::vector<std::string>& steps) {
-  std::set<std::string> before;
-  for (const std::string& id : steps) {
-    for (const std::string& previous : stages.step(id).later.previous) stages.addWithReads(previous, before);
-  }
-  return before;
-}
-
 }  // namespace
 
 void arrangeTakes(Project& project, const RunRequest& request) {
@@ -119,7 +110,7 @@ RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
       if (chosen.count(id)) (step.per_frame ? plan.frame_steps : plan.project_steps).push_back(id);
     }
   }
-  const std::set<std::string> before = stepsBefore(stages, plan.frame_steps);
+  const std::set<std::string> before = stages.readBefore(chosen);
   for (const std::string& id : plan.frame_steps) {
     if (before.contains(id)) plan.lead_steps.push_back(id);
   }

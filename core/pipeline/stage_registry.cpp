@@ -63,4 +63,12 @@ void StageRegistry::addWithReads(const std::string& step, std::set<std::string>&
   for (const std::string& read : readsOf(this->step(step))) addWithReads(read, all);
 }
 
+std::set<std::string> StageRegistry::readBefore(const std::set<std::string>& steps) const {
+  std::set<std::string> before;
+  for (const std::string& id : steps) {
+    for (const std::string& previous : step(id).later.previous) addWithReads(previous, before);
+  }
+  return before;
+}
+
 }  // namespace beam

@@ -28,6 +28,8 @@ class StageRegistry {
   const StepInfo& step(std::string_view step) const;
   // Into `all`: the step and everything that enters it, in this frame and those before.
   void addWithReads(const std::string& step, std::set<std::string>& all) const;
+  // Steps of earlier frames that `steps` of a later one read, with everything that enters these.
+  std::set<std::string> readBefore(const std::set<std::string>& steps) const;
 
  private:
   std::size_t indexOf(std::string_view stage) const;

@@ -57,8 +57,7 @@ std::optional<Between> betweenOf(const std::vector<Take>& takes, FrameIndex fram
 // What a run that names frames asks for: each run of consecutive ones, of which every `every`-th is taken.
 // `frames` ascend.
 std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every);
-// Consecutive takes with a lead of `overlap` frames, as far as there are so many before; takes with strides
-// and lone frames without.
+// With a lead of `overlap` frames, as far as there are so many before; takes with strides stay without.
 Take withLead(Take take, int overlap);
 // The list with `wanted` as the owner of all it claims; earlier takes that it covers wholly are gone.
 std::vector<Take> addTake(std::vector<Take> takes, const Take& wanted);
