@@ -91,7 +91,7 @@ void RunBar::showProgress(const StepProgress& p) {
   bar_->setFormat(QString("%1 %").arg(100 * p.job_fraction, 0, 'f', 1));
   QStringList parts{QString::fromStdString(p.report.label.empty() ? p.ref.step : p.report.label)};
   if (!p.ref.frame_name.empty()) parts.front() += " of frame " + QString::fromStdString(p.ref.frame_name);
-  if (p.ref.lead) parts.front() += ", on the way to the first";
+  if (p.ref.lead) parts.front() += " (lead)";
   if (p.report.total > 0) parts << QString("%L1 of %L2").arg(p.report.done).arg(p.report.total);
   if (p.rate > 0) parts << QString("%1 a second").arg(p.rate, 0, 'f', p.rate < 10 ? 1 : 0);
   parts << (p.seconds_left >= 0 ? "about " + durationText(p.seconds_left) + " left"
