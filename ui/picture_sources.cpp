@@ -67,7 +67,7 @@ void addPhotograph(std::vector<PictureSource>& sources, const Shot& shot) {
                        return pictureOf(shot.capture->source->photo(shot.view, shot.frame),
                                         fmt::format("Photograph · {}", shot.where));
                      }});
-  if (!shot.capture->has_masks) return;
+  if (shot.capture->masks == MaskKind::None) return;
   sources.push_back({"mask", "Mask", [shot] {
                        const Image<std::uint8_t> mask = shot.capture->source->mask(shot.view, shot.frame);
                        if (mask.empty()) {

@@ -103,7 +103,7 @@ void ProjectPanel::refreshFacts() {
   lines << QString("%1 cameras, %2 frames%3")
                .arg(capture.views.size())
                .arg(capture.frames.size())
-               .arg(capture.has_masks ? ", masks" : ", no masks");
+               .arg(capture.masks != MaskKind::None ? ", masks" : ", no masks");
   if (const FrameValues& values = model_.values(); values.cloud) {
     lines << QString("%L1 Gaussians%2")
                  .arg(values.cloud->size())

@@ -85,7 +85,8 @@ CheckReport checkCapture(const fs::path& path, const ImportOptions& options) {
   parallelFor(set.views.size(), 1,
               [&](std::size_t v, std::size_t) { r.cameras[v] = checkCamera(set, v, warnings[v]); });
   for (const auto& w : warnings) r.warnings.insert(r.warnings.end(), w.begin(), w.end());
-  if (!set.has_masks) r.warnings.push_back("no masks: there will be no visual hull and no mask loss");
+  if (set.masks == MaskKind::None)
+    r.warnings.push_back("no masks: there will be no visual hull and no mask loss");
   if (!set.environment_file) {
     r.warnings.push_back("no panorama (environment.exr or .hdr): the run stops after Surface");
   } else {

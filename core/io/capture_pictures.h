@@ -12,8 +12,6 @@
 
 namespace beam {
 
-enum class MaskKind { None, Files, Alpha, Key };
-
 struct PictureFiles {
   std::filesystem::path picture, mask;  // empty: there is none
 };

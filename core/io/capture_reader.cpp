@@ -193,7 +193,7 @@ ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxi
   }
   const MaskKind kind = maskKindOf(files);
   warnOfGaps(d, files, set.frames, kind);
-  set.has_masks = kind != MaskKind::None;
+  set.masks = kind;
   set.seed_points = pointsOf(d, folder, d.warnings);
   for (vec3& p : set.seed_points.position_m) p = vec3(world_from_capture * dvec3(p));
   for (const char* name : {"environment.exr", "environment.hdr"}) {

@@ -59,7 +59,8 @@ Digest InputDigests::calibration(const CaptureSet& capture) const {
 }
 
 Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame, Split split) const {
-  std::string text;
+  // The kind is read off the first picture, which need not be one of these.
+  std::string text = fmt::format("masks {}\n", static_cast<int>(capture.masks));
   for (std::size_t i = 0; i < capture.views.size(); ++i) {
     const ViewIndex view{static_cast<std::int32_t>(i)};
     if (capture.views[i].split != split || !capture.source->has(view, frame)) continue;

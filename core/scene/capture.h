@@ -46,6 +46,10 @@ class FrameSource {
   virtual std::vector<std::string> files(ViewIndex, FrameIndex) const { return {}; }
 };
 
+// Where the masks of a capture are: in files of their own, in the pictures' alpha, or all pixels that are not
+// the constant colour of the border.
+enum class MaskKind { None, Files, Alpha, Key };
+
 enum class UpAxis { PlusY, PlusZ, MinusY };
 std::string toText(UpAxis up);  // "+Y", "+Z", "-Y"
 
@@ -54,7 +58,7 @@ struct CaptureSet {
   std::vector<View> views;
   std::vector<std::string> frames;  // the capture's own frame names, in order
   double frames_per_second = 30;
-  bool has_masks = false;
+  MaskKind masks = MaskKind::None;
   PointCloud seed_points;                       // in world axes; may be empty
   std::optional<std::string> environment_file;  // path of the capture's panorama
   UpAxis up = UpAxis::PlusY;                    // of the capture's own axes

@@ -98,7 +98,7 @@ TEST(CaptureFormats, ColmapNamesMayBeFoldersFramesOfACameraOrPlainFiles) {
   EXPECT_EQ(plain.set.views[0].name, "other");
   EXPECT_EQ(plain.set.views[1].name, "wide (0)");
   EXPECT_EQ(plain.set.frames.size(), 1u);
-  EXPECT_FALSE(plain.set.has_masks);
+  EXPECT_EQ(plain.set.masks, MaskKind::None);
 }
 
 TEST(CaptureFormats, CalibrationsThatAreNotFiniteNameFileCameraAndField) {
@@ -255,10 +255,10 @@ TEST(CaptureFormats, MasksAreFoundByNameElseInAlphaElseByAKeyWithAConstantBorder
   put(dir / "dataset.json", kDataset);
   putPictures(dir.path());
   fs::remove_all(dir / "masks");
-  EXPECT_FALSE(openCapture(dir.path()).set.has_masks);
+  EXPECT_EQ(openCapture(dir.path()).set.masks, MaskKind::None);
   const auto coverage = [&](const char* what) {
     const ImportedCapture c = openCapture(dir.path());
-    EXPECT_TRUE(c.set.has_masks) << what;
+    EXPECT_NE(c.set.masks, MaskKind::None) << what;
     const Image<std::uint8_t> m = c.set.source->mask(ViewIndex{0}, FrameIndex{0});
     EXPECT_EQ(m.width, 20) << what;
     return m.empty() ? std::make_pair(0, 0) : std::make_pair(int{m(0, 0)}, int{m(10, 6)});
@@ -274,7 +274,7 @@ TEST(CaptureFormats, MasksAreFoundByNameElseInAlphaElseByAKeyWithAConstantBorder
   EXPECT_EQ(coverage("key"), std::make_pair(0, 255));
   keyed(0, 5) = u8vec3(1);
   writePng(dir / "images/a/000003.png", keyed);
-  EXPECT_FALSE(openCapture(dir.path()).set.has_masks);
+  EXPECT_EQ(openCapture(dir.path()).set.masks, MaskKind::None);
   // Files win, under each of their names.
   Image<std::uint8_t> mask(20, 12, 40);
   for (const char* name : {"masks/a/000003.png.png", "mask/a/000003.png", "mattes/a/000003.png",

@@ -32,7 +32,7 @@ TEST(CaptureReader, ReadsADatasetIntoTheHousesWorld) {
   ASSERT_EQ(c.set.views.size(), 3u);
   EXPECT_EQ(c.set.views[2].split, Split::Test);
   EXPECT_EQ(c.set.frames, (std::vector<std::string>{"000003", "000004"}));
-  EXPECT_TRUE(c.set.has_masks);
+  EXPECT_NE(c.set.masks, MaskKind::None);
   // A point 1 m above the capture's origin (its +Z) is 1 m along the world's +Y.
   const dvec3 expected = dvec3(0.1, 0.9 - 1, 3);
   const dvec3 got = c.set.views[0].camera.camera_from_world * dvec3(0, 1, 0);

@@ -182,6 +182,7 @@ class FakeHouse {
       }
       imported.set.frames = frame_names;
       if (has_panorama) imported.set.environment_file = (root() / "light.hdr").string();
+      imported.set.masks = masks;
       imported.set.source = frames;
       return imported;
     };
@@ -213,6 +214,7 @@ class FakeHouse {
   FakeHooks hooks;
   std::vector<std::string> frame_names = {"000", "001", "002"};
   bool has_panorama = true;
+  MaskKind masks = MaskKind::None;
   std::shared_ptr<FakeFrames> frames = std::make_shared<FakeFrames>();
   std::shared_ptr<PipelineSetup> setup;
 

@@ -79,6 +79,12 @@ TEST_F(KeyLaw, APictureVoidsItsOwnFrameOnly) {
   EXPECT_EQ(keysOf(project_, FrameIndex{1}), other_before);
 }
 
+TEST_F(KeyLaw, WhereMasksAreVoidsWhatReadsPictures) {
+  house_.masks = MaskKind::Alpha;
+  EXPECT_EQ(changedSteps(before_, keysOf(house_.open())),
+            (std::vector<std::string>{"materials.bake", "surface.fit", "surface.refine", "surface.seed"}));
+}
+
 TEST_F(KeyLaw, ThePanoramaVoidsMaterialsOnly) {
   std::ofstream(house_.root() / "light.hdr") << "other light";
   EXPECT_EQ(changedSteps(before_, keysOf(house_.open())),
