@@ -252,6 +252,19 @@ TEST(SceneViewport, ShowsEllipsoidsCamerasAndMesh) {
   EXPECT_NE(view.grab().toImage(), without);
 }
 
+// What is out of date on arrival is dropped at once, while the thread that made it may not be done yet.
+TEST(SceneViewport, LayersMayBeReplacedAsFastAsTheyAreMade) {
+  SceneView view;
+  auto mesh = std::make_shared<Mesh>();
+  mesh->vertices = {vec3(-1, 0, 0), vec3(1, 0, 0), vec3(0, 1.5f, 0)};
+  mesh->triangles = {{0, 1, 2}};
+  for (int i = 0; i < 20000; ++i) {
+    view.setMesh(mesh);
+    QApplication::processEvents();
+  }
+  EXPECT_TRUE(waitFor([&] { return view.settled(); }));
+}
+
 TEST(SceneViewport, ShowsJointsOverTheSkinAndFindsTheOneUnderTheHand) {
   SceneView view;
   view.resize(400, 400);

@@ -173,10 +173,12 @@ void SceneView::State::build(SceneLayer layer, std::function<PolyData()> make_da
     return;
   }
   workers[static_cast<int>(layer)].submit([this, layer, make_data = std::move(make_data), count, ticket] {
-    const PolyData data = make_data();
+    // Handed over whole: who drops one of several references to a data object walks it for cycles
+    // (vtkGarbageCollector), which must not meet the last reference dropped by another thread.
+    PolyData data = make_data();
     QMetaObject::invokeMethod(
         &owner,
-        [this, layer, data, count, ticket] {
+        [this, layer, data = std::move(data), count, ticket] {
           if (tickets[static_cast<int>(layer)] == ticket) show(layer, data, count);
         },
         Qt::QueuedConnection);
