@@ -8,6 +8,7 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/stages/carried_skin.h"
+#include "core/stages/interpolated_frame.h"
 #include "core/stages/track_files.h"
 
 namespace beam {
@@ -24,17 +25,21 @@ const SurveyLane* trackLane(const TakeSurvey& survey) {
 }
 
 struct FrameJoints {
-  JointPositions position_m;  // empty: the frame has none
-  bool restarted = false;     // they are others than those of the frame before
+  JointPositions position_m;       // empty: the frame has none
+  bool restarted = false;          // they are others than those of the frame before
+  std::optional<Between> between;  // that they are interpolated from
 };
 
 FrameJoints readJoints(const Project& project, FrameIndex frame) {
-  const auto folder = project.result(kJointsStep, frame);
-  if (!folder) return {};
-  return {readSplatPly(*folder / kJointsFile).cloud.position_m, readTrackNote(*folder).restarted};
+  if (const auto folder = project.result(kJointsStep, frame))
+    return {readSplatPly(*folder / kJointsFile).cloud.position_m, readTrackNote(*folder).restarted, {}};
+  const std::optional<Between> between = betweenOf(project.takes(), frame);
+  auto pose = between ? jointsBetween(project, *between) : std::nullopt;
+  if (!pose) return {};
+  return {std::move(pose->position_m), false, between};
 }
 
-// What the frame's skin hangs on; null where its results are not those of `cloud`.
+// What the skin hangs on in a solved frame; null where its results are not those of `cloud`.
 std::shared_ptr<const Anchors> readBinding(const Project& project, FrameIndex frame,
                                            const GaussianCloud& cloud) {
   const auto joints = project.result(kJointsStep, frame);
@@ -99,8 +104,12 @@ JointsShown JointSource::trailsAt(const Wish& wish, Memory& memory) {
     shown.hint = "no joints of this frame yet: run until " + QString::fromStdString(lane->title);
     return shown;
   }
-  const Take take = project.takeOf(wish.frame);
   std::optional<FrameIndex> at = wish.frame;
+  if (now.between) {
+    shown.trails.push_back(now.position_m);
+    at = now.between->before;
+  }
+  const Take take = project.takeOf(*at);
   while (at && project.takeOf(*at) == take && shown.trails.size() < kTrailFrames) {
     const FrameJoints& joints = jointsOf(*at);
     if (joints.position_m.size() != now.position_m.size()) break;
@@ -116,7 +125,8 @@ JointsShown JointSource::trailsAt(const Wish& wish, Memory& memory) {
 
 std::shared_ptr<const std::vector<float>> JointSource::influenceAt(const Wish& wish, Memory& memory) {
   if (memory.bound_cloud != wish.cloud) {
-    memory.bound = readBinding(*memory.project, wish.frame, *wish.cloud);
+    const std::optional<Between>& between = memory.joints.at(wish.frame.value).second.between;
+    memory.bound = readBinding(*memory.project, between ? between->after : wish.frame, *wish.cloud);
     memory.bound_cloud = wish.cloud;
   }
   memory.picked = wish.picked;

@@ -49,7 +49,9 @@ void markInterpolated(const Project& project, TakeSurvey& survey) {
     survey.stamps[f] = digestOf("between " + own[f].hex() + own[a].hex() + own[b].hex());
     for (std::size_t i = 0; i < survey.lanes.size(); ++i) {
       std::vector<CellState>& cells = survey.lanes[i].cells;
-      if (cells[f] == CellState::Empty && cells[a] == CellState::Done && cells[b] == CellState::Done &&
+      // Seen as a take of its own, a frame between is in no need of joints.
+      const bool blank = cells[f] == CellState::Empty || cells[f] == CellState::NotNeeded;
+      if (blank && cells[a] == CellState::Done && cells[b] == CellState::Done &&
           followsFrames(project.setup().stages.infos()[i]))
         cells[f] = CellState::Interpolated;
     }

@@ -7,6 +7,7 @@
 #include "core/io/splat_ply.h"
 #include "core/method/interpolate_skin.h"
 #include "core/stages/carried_skin.h"
+#include "core/stages/track_files.h"
 
 namespace beam {
 namespace {
@@ -68,6 +69,13 @@ std::optional<FrameResult> loadShownFrame(const Project& project, FrameIndex fra
   const auto pair = solvedPair(project, *between);
   if (!pair) return std::nullopt;
   return interpolated(pair->first, pair->second, between->share);
+}
+
+std::optional<Pose> jointsBetween(const Project& project, const Between& between) {
+  const auto a = project.result(kJoints, between.before), b = project.result(kJoints, between.after);
+  if (!a || !b || readTrackNote(*b).restarted) return std::nullopt;
+  const auto read = [](const fs::path& folder) { return poseOf(readSplatPly(folder / kJointsFile).cloud); };
+  return interpolateJoints(read(*a), read(*b), between.share);
 }
 
 std::optional<Between> solvedAround(const Project& project, FrameIndex frame) {

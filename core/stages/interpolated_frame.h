@@ -6,12 +6,16 @@
 #include <optional>
 
 #include "core/pipeline/frame_result.h"
+#include "core/scene/pose.h"
 
 namespace beam {
 
 // What to show of the frame: its own result, else one interpolated between its neighbours in a take with a
 // stride; empty when there is neither. The joints may start anew between two frames: then there is nothing.
 std::optional<FrameResult> loadShownFrame(const Project& project, FrameIndex frame);
+
+// The joints between two solved frames; empty where one has none or they start anew.
+std::optional<Pose> jointsBetween(const Project& project, const Between& between);
 
 // The frame has no result of its own and lies between two that have one. Reads no Gaussians.
 std::optional<Between> solvedAround(const Project& project, FrameIndex frame);

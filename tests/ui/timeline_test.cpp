@@ -295,6 +295,11 @@ TEST_F(Timeline, ScoutsTheRangeAndShowsWhatLiesBetween) {
   EXPECT_TRUE(window.model().values().interpolated);
   EXPECT_TRUE(window.model().values().materials);
   const vec3 first = window.model().values().cloud->position_m[0];
+  window.showView(StudioView::Scene);
+  ASSERT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().trails.size() == 2; }));
+  EXPECT_NEAR(window.joints().shown().trails[1][1].x, 0.1f + 0.3f, 1e-6) << "joints between those of 0 and 2";
+  window.joints().pick(0);
+  EXPECT_TRUE(waitFor([&] { return window.settled() && window.joints().shown().influence != nullptr; }));
   window.player().goTo(2);
   ASSERT_TRUE(waitFor([&] { return window.settled(); }));
   EXPECT_FALSE(window.model().values().interpolated);

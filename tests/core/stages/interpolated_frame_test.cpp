@@ -13,6 +13,7 @@
 #include "core/io/splat_ply.h"
 #include "core/pipeline/take_survey.h"
 #include "core/stages/render_channels.h"
+#include "core/stages/track_files.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
 namespace beam::testing {
@@ -87,6 +88,7 @@ class Scout {
     if (step == "track.joints") {
       writeSplatPly(c.folder / kJointsFile, stickAt(f), nullptr);
       writePosePly(c.folder / kRestPoseFile, poseOf(stickAt(0)));
+      writeTrackNote(c.folder, {restarts_.contains(c.frame.value), 1});
       return;
     }
     Materials materials{std::vector<float>(12, 0.1f + 0.1f * f), ShBlock(12, 3), ShBlock(12, 1)};
@@ -125,6 +127,17 @@ TEST(InterpolatedFrame, ShowsWhatLiesBetweenItsFrames) {
   }
 }
 
+TEST(InterpolatedFrame, HasJointsBetweenThoseOfItsNeighbours) {
+  const Project project = solved().project();
+  const auto joints = jointsBetween(project, {{3}, {6}, 1.0 / 3});
+  ASSERT_TRUE(joints);
+  const GaussianCloud expected = stickAt(4);
+  for (std::size_t i = 0; i < 12; ++i)
+    EXPECT_LT(glm::length(joints->position_m[i] - expected.position_m[i]), 1e-5f) << i;
+  EXPECT_FALSE(jointsBetween(project, {{6}, {7}, 0.5})) << "7 has none";
+  EXPECT_FALSE(jointsBetween(Scout({6}).project(), {{3}, {6}, 0.5})) << "others";
+}
+
 TEST(InterpolatedFrame, LeavesItsOwnFramesAloneAndHasNothingBehindTheLast) {
   const Project project = solved().project();
   EXPECT_FALSE(loadShownFrame(project, {3})->interpolated);
@@ -160,10 +173,9 @@ TEST(InterpolatedFrame, IsDrawnAsSuchAndReadAgainWithItsNeighbours) {
   const TakeSurvey survey = surveyor.survey(project);
   const CellState done = CellState::Done, between = CellState::Interpolated;
   const CellState none = CellState::NotNeeded, to_do = CellState::Empty;
-  EXPECT_THAT(survey.lanes[0].cells, ElementsAre(done, none, none, done, none, none, done, none));
-  for (const std::size_t lane : {1, 2}) {
+  for (const std::size_t lane : {0, 1, 2}) {
     EXPECT_THAT(survey.lanes[lane].cells,
-                ElementsAre(done, between, between, done, between, between, done, to_do));
+                ElementsAre(done, between, between, done, between, between, done, lane == 0 ? none : to_do));
   }
   EXPECT_NE(survey.stamps[1], Digest{});
   EXPECT_NE(survey.stamps[1], survey.stamps[4]);
