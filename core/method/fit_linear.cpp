@@ -19,7 +19,8 @@ constexpr float kSlopeFloor = 0.01f;        // linear; below it the eye's slope 
 constexpr float kSeen = 0.05f;              // sum of blend weights (pixels) that makes a Gaussian seen
 constexpr float kPrior = 1e-4f;             // pull towards the first guess, of what the pictures say
 constexpr float kPriorPixels = 0.003f;      // and at least as much as this many pixels would say
-constexpr float kLeanPixels = 1;            // evidence of the frame before that no Gaussian is without
+constexpr float kLeanPixels = 1;            // a Gaussian seen by less leans on the frame before
+constexpr float kTiny = 1e-20f;             // keeps quotients of nothing finite
 constexpr int kNeighbors = 4;               // seen Gaussians that lend their colour to an unseen one
 constexpr double kConverged = 1e-10;        // of the squared residual
 constexpr std::size_t kGrain = 2048;        // Gaussians a piece
@@ -183,27 +184,22 @@ class NormalEquations {
     return x;
   }
 
-  // Adds memory * kShC0^2 * evidence * |x - before|^2 (kShC0^2: the mean over directions of every basis
-  // function's square), so that what many Gaussians share becomes (seen + memory * before) / (1 + memory):
-  // the unit of memory is a frame's evidence, whatever the number of pixels and Gaussians (less where
-  // view-dependence is cheap: over the side that is seen, its functions imitate a constant). Where the
-  // pictures contradict by more than `outlier` (a Gaussian that slid onto another cloth), memory fades.
-  // Returns the right-hand side for a step away from `before`.
-  MaterialCoefficients holdTo(const MaterialCoefficients& before, vec4 memory, float outlier) {
-    MaterialCoefficients r = residual(before);
-    tie_.resize(cloud_.size());
-    for (std::size_t i = 0; i < tie_.size(); ++i) {
-      const vec4 evidence = row_sum_[i] + kLeanPixels * typical_;
-      const vec4 shift = contradiction(i, r[i * kShCount] / kShC0) / outlier;
-      const vec4 doubt = 1.0f + shift * shift;
-      tie_[i] = kShC0 * kShC0 * memory * evidence / (doubt * doubt);
-    }
-    for (std::size_t i = 0; i < r.size(); ++i) {
-      // View-dependence is pulled towards 0 as well.
-      if (i % kShCount != 0) r[i] -= pull(i) * before[i];
-      diagonal_[i] += tie_[i / kShCount];
-    }
-    return r;
+  // The mean of `found` in this frame and `before`, which counts as `memory` frames; more where the pictures
+  // say little, and fading where they contradict it by more than `outlier` (a Gaussian that slid onto another
+  // cloth).
+  void mix(const MaterialCoefficients& before, vec4 memory, float outlier,
+           MaterialCoefficients& found) const {
+    const std::vector<vec4> apart = contradictions(before);
+    parallelFor(cloud_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const vec4 shift = apart[i] / outlier;
+        const vec4 doubt = 1.0f + shift * shift;
+        const vec4 held = memory / (doubt * doubt);
+        const vec4 said = row_sum_[i] / (row_sum_[i] + glm::max(kLeanPixels * typical_, kTiny));
+        for (std::size_t k = i * kShCount; k < (i + 1) * kShCount; ++k)
+          found[k] += (before[k] - found[k]) * (held / glm::max(held + said, kTiny));
+      }
+    });
   }
 
   // B^T W^T D (target - 0.5 alpha - W B x): the right-hand side for a step away from x.
@@ -225,7 +221,6 @@ class NormalEquations {
     parallelFor(p.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         q[i] = pull(i) * p[i];
-        if (!tie_.empty()) q[i] += tie_[i / kShCount] * p[i];
       }
     });
     const auto evaluate = [&](std::size_t i, const std::array<float, kShCount>& b) { return at(p, i, b); };
@@ -247,17 +242,21 @@ class NormalEquations {
     return share * row_sum_[i / kShCount] + kPriorPixels * typical_;
   }
 
-  // How far the pictures want Gaussian i from where it is, as seen (sRGB-encoded; AO as it is): the worst
-  // channel's for all of base colour, so that its hue does not split. `misfit`: importance-weighted sum.
-  vec4 contradiction(std::size_t i, vec4 misfit) const {
-    vec4 apart(0);
-    for (int c = 0; c < 4; ++c) {
-      if (!(row_sum_[i][c] > 0)) continue;
-      const float slope = c < 3 ? srgbSlope(std::max(mean_[i][c] / row_sum_[i][c], kSlopeFloor)) : 1.0f;
-      apart[c] = slope * std::abs(misfit[c]) / row_sum_[i][c];
+  // How far off x is in the pixels of each Gaussian, as seen (sRGB-encoded; AO as it is): the worst channel's
+  // for all of base colour, so that its hue does not split.
+  std::vector<vec4> contradictions(const MaterialCoefficients& x) const {
+    std::vector<vec4> apart(cloud_.size(), vec4(0));
+    const auto evaluate = [&](std::size_t i, const std::array<float, kShCount>& b) {
+      return 0.5f + at(x, i, b);
+    };
+    forViews([&](const ViewEquations& v, std::vector<vec4>& out) { differences(v, out, evaluate); },
+             [&](std::size_t i, const std::array<float, kShCount>&, vec4 s) { apart[i] += s; });
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+      for (int c = 0; c < 4; ++c) apart[i][c] = row_sum_[i][c] > 0 ? apart[i][c] / row_sum_[i][c] : 0.0f;
+      const float worst = std::max({apart[i].x, apart[i].y, apart[i].z});
+      apart[i] = {worst, worst, worst, apart[i].w};
     }
-    const float worst = std::max({apart.x, apart.y, apart.z});
-    return {worst, worst, worst, apart.w};
+    return apart;
   }
 
   // Mean importance of a pixel that has any.
@@ -325,10 +324,9 @@ class NormalEquations {
     }
   }
 
-  // W^T D (W values), or W^T D (target - W values).
+  // Of the Gaussians that the view sees.
   template <class Evaluate>
-  void misfit(const ViewEquations& v, std::vector<vec4>& out, Evaluate&& evaluate,
-              bool against_target) const {
+  std::vector<vec4> valuesIn(const ViewEquations& v, Evaluate&& evaluate) const {
     std::vector<vec4> values(cloud_.size());
     std::vector<std::uint8_t> known(cloud_.size(), 0);
     for (const std::uint32_t g : v.gaussian) {
@@ -336,6 +334,32 @@ class NormalEquations {
       values[g] = evaluate(g, basis(v, g));
       known[g] = 1;
     }
+    return values;
+  }
+
+  // W^T D |target - W values| / alpha, as seen.
+  template <class Evaluate>
+  void differences(const ViewEquations& v, std::vector<vec4>& out, Evaluate&& evaluate) const {
+    const std::vector<vec4> values = valuesIn(v, evaluate);
+    for (std::size_t r = 0; r < v.rows(); ++r) {
+      float alpha = 0;
+      vec4 sum(0);
+      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) {
+        alpha += v.weight[k];
+        sum += v.weight[k] * values[v.gaussian[k]];
+      }
+      vec4 apart = glm::abs(v.target[r] - sum) / alpha;
+      for (int c = 0; c < 3; ++c) apart[c] *= srgbSlope(std::max(v.target[r][c] / alpha, kSlopeFloor));
+      apart *= v.importance[r];
+      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) out[v.gaussian[k]] += v.weight[k] * apart;
+    }
+  }
+
+  // W^T D (W values), or W^T D (target - W values).
+  template <class Evaluate>
+  void misfit(const ViewEquations& v, std::vector<vec4>& out, Evaluate&& evaluate,
+              bool against_target) const {
+    const std::vector<vec4> values = valuesIn(v, evaluate);
     for (std::size_t r = 0; r < v.rows(); ++r) {
       vec4 sum(0);
       for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) sum += v.weight[k] * values[v.gaussian[k]];
@@ -361,7 +385,6 @@ class NormalEquations {
   std::vector<ViewEquations> views_;
   std::vector<vec4> row_sum_, coverage_, mean_;  // of importance w, of w where seen, of importance w target
   std::vector<vec4> diagonal_;
-  std::vector<vec4> tie_;  // of every Gaussian to the frame before; empty: none
   vec4 typical_ = vec4(0);
 };
 
@@ -428,19 +451,17 @@ MaterialCoefficients fitLinear(const MapSource& maps, const GaussianCloud& cloud
                                const MaterialCoefficients* before, const FitMaterialsOptions& options,
                                ComputeDevice& device, Progress& progress, std::size_t most_entries) {
   Progress collecting = progress.part(0.3, "collecting blend weights");
-  const double regularization = before ? options.later.regularization : options.regularization;
-  NormalEquations equations(maps, cloud, static_cast<float>(regularization), most_entries, device,
+  NormalEquations equations(maps, cloud, static_cast<float>(options.regularization), most_entries, device,
                             collecting);
-  MaterialCoefficients x = before ? *before : equations.firstGuess();
+  // From its own pictures each time: conjugate gradients that stop early are a regularization, which a start
+  // from the frame before would undo a little more with every frame (measured: 0.5 dB of new views).
+  MaterialCoefficients x = equations.firstGuess();
   Progress solving = progress.part(0.7, "solving for materials");
+  descend(equations, x, equations.residual(x), options.linear_iterations, solving);
   if (before) {
-    const LaterMaterialsOptions& later = options.later;
-    vec4 memory(static_cast<float>(later.memory_frames));
-    memory.w = static_cast<float>(later.occlusion_memory_frames);
-    MaterialCoefficients r = equations.holdTo(x, memory, static_cast<float>(later.outlier));
-    descend(equations, x, std::move(r), later.linear_iterations, solving);
-  } else {
-    descend(equations, x, equations.residual(x), options.linear_iterations, solving);
+    vec4 memory(static_cast<float>(options.later.memory_frames));
+    memory.w = static_cast<float>(options.later.occlusion_memory_frames);
+    equations.mix(*before, memory, static_cast<float>(options.later.outlier), x);
   }
   return x;
 }

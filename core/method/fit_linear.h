@@ -16,8 +16,8 @@ using MaterialCoefficients = std::vector<vec4>;
 
 inline constexpr std::size_t kMostBlendWeights = 150'000'000;  // of 8 bytes: 1.2 GB
 
-// `before`: of the same Gaussians in the frame before, turned with them, or null. The solve starts there and
-// is held to it as options.later says; null: starts from the pictures.
+// `before`: of the same Gaussians in the frame before, turned with them, or null. What is found is
+// held to it as options.later says.
 // Where the views have more than about `most_entries` blend weights, every so manieth pixel is used.
 MaterialCoefficients fitLinear(const MapSource& maps, const GaussianCloud& cloud,
                                const MaterialCoefficients* before, const FitMaterialsOptions& options,

@@ -165,22 +165,6 @@ void describe(Fields& f, LaterMaterialsOptions& o) {
            .max = 100,
            .advanced = true},
           o.outlier);
-  f.field({.name = "regularization",
-           .label = "Regularization, later frames",
-           .help = "Linear solver: pull of the view-dependent coefficients towards 0, which flicker as the "
-                   "body turns "
-                   "before a camera and hardly sharpen what many frames average.",
-           .min = 0,
-           .max = 100,
-           .advanced = true},
-          o.regularization);
-  f.field({.name = "linear_iterations",
-           .label = "Linear iterations, later frames",
-           .help = "Steps of conjugate gradients of a frame that starts from the frame before.",
-           .min = 0,
-           .max = 1000,
-           .advanced = true},
-          o.linear_iterations);
   f.field({.name = "temporal_weight",
            .label = "Temporal weight",
            .help = "Adam: pull of base colour towards the frame before; the paper takes 5e-5 (eq. 10).",

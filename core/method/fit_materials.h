@@ -18,8 +18,6 @@ struct LaterMaterialsOptions {
   // linear: the same of AO, which really changes: a tenth (methods 5.10)
   double occlusion_memory_frames = 0.4;
   double outlier = 0.1;           // linear: contradiction that halves and more the memory, sRGB
-  double regularization = 0.1;    // linear: on the view-dependent coefficients
-  int linear_iterations = 12;     // the start is near
   double temporal_weight = 5e-5;  // adam: lambda_temp of eq. 10, base colour only
   int adam_iterations = 1500;     // methods 5.10
 };
@@ -52,8 +50,8 @@ struct EarlierFrame {
   const Materials& materials;
 };
 
-// Of a later frame of a take: starts from the frame before, whose view-dependence turns with each Gaussian
-// (methods A-19), is held to it, and carries its roughness. Throws Error{Bug} when the counts differ.
+// Of a later frame of a take: held to the frame before, whose view-dependence turns with each Gaussian
+// (methods A-19); carries its roughness. Throws Error{Bug} when the counts differ.
 Materials fitLaterMaterials(const MapSource& maps, const GaussianCloud& cloud, const EarlierFrame& before,
                             const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress);
 

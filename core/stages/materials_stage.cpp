@@ -42,7 +42,7 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                   {.id = "fit",
                    .title = "Fit materials",
                    .source = "BEAM 3.2",
-                   .version = 2,
+                   .version = 3,
                    .inputs = {"capture.import", "capture.screen", "surface.refine", "materials.bake"},
                    .weight = 10,
                    .later = {.inputs = {"track.joints"}, .previous = {"materials.fit"}}}}};

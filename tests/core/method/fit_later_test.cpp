@@ -96,15 +96,13 @@ TEST_F(LaterFit, WithoutMemoryIsTheFrameAlone) {
   EXPECT_EQ(found.ambient_occlusion.coefficients, alone.ambient_occlusion.coefficients);
 }
 
-// (seen + memory before) / (1 + memory) where view-dependence cannot imitate a constant.
+// (seen + memory before) / (1 + memory).
 TEST_F(LaterFit, WeighsTheFrameBeforeAsSoManyFrames) {
   const std::vector<MaterialMaps> maps = mapsOf(constant(0.3f, 0.9f));
   for (const double memory : {1.0, 4.0}) {
-    const dvec2 mean = seenMean(fitLater(maps, constant(0.6f, 0.5f),
-                                         {.memory_frames = memory,
-                                          .occlusion_memory_frames = memory,
-                                          .outlier = kEndless,
-                                          .regularization = 100}));
+    const dvec2 mean =
+        seenMean(fitLater(maps, constant(0.6f, 0.5f),
+                          {.memory_frames = memory, .occlusion_memory_frames = memory, .outlier = kEndless}));
     EXPECT_NEAR(mean.x, (0.3 + memory * 0.6) / (1 + memory), 0.025) << memory;
     EXPECT_NEAR(mean.y, (0.9 + memory * 0.5) / (1 + memory), 0.035) << memory;
   }
