@@ -90,19 +90,21 @@ class Collector {
   // Refers to the views of history_. A camera with pictures that was not scored had no readable one: nothing
   // else leaves it out.
   std::vector<ScoredFrame> scored() const {
-    std::vector<std::string> expected;
+    std::vector<const View*> expected;
     for (std::size_t v = 0; v < project_.capture().views.size(); ++v) {
       if (hasPictures(ViewIndex{static_cast<std::int32_t>(v)}))
-        expected.push_back(project_.capture().views[v].name);
+        expected.push_back(&project_.capture().views[v]);
     }
     std::vector<ScoredFrame> frames;
     for (const FrameQuality& q : history_.frames) {
       if (q.views.empty()) continue;
-      ScoredFrame s{q.name, q.frame.value, q.views, {}};
-      for (const std::string& camera : expected) {
+      ScoredFrame s{q.name, q.frame.value, q.views, {}, 0};
+      for (const View* view : expected) {
         const bool there = std::any_of(q.views.begin(), q.views.end(),
-                                       [&](const ViewScore& v) { return v.camera == camera; });
-        if (!there) s.missing.push_back(camera);
+                                       [&](const ViewScore& v) { return v.camera == view->name; });
+        if (there) continue;
+        s.missing.push_back(view->name);
+        s.missing_training += view->split == Split::Train;
       }
       frames.push_back(std::move(s));
     }

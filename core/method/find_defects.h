@@ -17,6 +17,7 @@ struct ScoredFrame {
   int index = 0;  // in the capture; neighbours in time differ by one
   std::span<const ViewScore> views;
   std::vector<std::string> missing;  // cameras of the capture without a readable picture
+  int missing_training = 0;          // how many of them are no test cameras
 };
 
 enum class DefectKind { Missing, Black, Frozen, Blurred, Late, Exposure };

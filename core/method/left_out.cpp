@@ -74,7 +74,7 @@ std::string toText(const LeftOutCamera& c, std::span<const Defect> defects) {
 LeftOutLoss lossOf(std::span<const ScoredFrame> frames) {
   LeftOutLoss loss;
   for (const ScoredFrame& f : frames) {
-    int fitted = 0, left_out = 0;
+    int fitted = 0, left_out = f.missing_training;
     for (const ViewScore& v : f.views) {
       left_out += v.left_out;
       fitted += !v.left_out && !v.held_out;

@@ -54,6 +54,16 @@ TEST(LeftOut, TheLossComparesFramesAndSaysWhatIsNotKnown) {
   EXPECT_THAT(toText(lossOf(std::span(frames).first(1))), IsEmpty());
 }
 
+TEST(LeftOut, ACameraWithoutAPictureCountsAsLeftOut) {
+  const std::vector<ViewScore> all = {scored("a", 30), scored("b", 32), scored("t", 28, true)},
+                               fewer = {scored("a", 31), scored("t", 27, true)};
+  const LeftOutLoss loss =
+      lossOf(std::vector<ScoredFrame>{{"f0", 0, all, {}, 0}, {"f1", 1, fewer, {"b"}, 1}});
+  EXPECT_EQ(loss.of, 2);
+  EXPECT_EQ(loss.complete.frames, 1);
+  EXPECT_THAT(toText(loss), HasSubstr("-1.00 dB"));
+}
+
 TEST(LeftOut, WithoutHeldOutCamerasNoFigureIsMadeUp) {
   const std::vector<ViewScore> all = {scored("a", 30), scored("b", 32)},
                                fewer = {scored("a", 33), scored("b", 9, false, true)};
