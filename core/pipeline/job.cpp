@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <filesystem>
 #include <new>
 #include <thread>
 
@@ -55,6 +56,9 @@ JobFinished Job::run(const RunRequest& request) {
     finished_.outcome = JobOutcome::Cancelled;
   } catch (const Error& e) {
     fail(e.kind(), e.what());
+  } catch (const std::filesystem::filesystem_error& e) {
+    fail(Error::Kind::Storage,
+         fmt::format("{}; expected a place that can be read and written, with room left", e.what()));
   } catch (const std::bad_alloc&) {
     fail(Error::Kind::OutOfMemory,
          fmt::format(
@@ -332,10 +336,14 @@ void Job::failFrame(const StepRef& ref, const std::string& message) {
   } catch (const Error& e) {
     logWarning("the failure of frame {} could not be noted: {}", ref.frame_name, e.what());
   }
-  logDebug("{}", told);
   const StepFailed failed{ref, message};
-  finished_.failed.push_back(failed);
   tell_(failed);
+  if (turn_ && turn_->lead()) {  // nobody asked for it: what it was to lead begins anew
+    logWarning("{}", told);
+    return;
+  }
+  logDebug("{}", told);
+  finished_.failed.push_back(failed);
 }
 
 void Job::acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds) {

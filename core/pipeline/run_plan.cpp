@@ -115,8 +115,16 @@ RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
     if (before.contains(id)) plan.lead_steps.push_back(id);
   }
   std::vector<FrameIndex> frames;
-  for (const Take& take : takesOfFrames(framesOf(project, request), request.every)) {
+  const std::vector<FrameIndex> asked = framesOf(project, request);
+  for (const Take& take : takesOfFrames(asked, request.every)) {
     for (const FrameIndex frame : take.frames()) frames.push_back(frame);
+  }
+  if (!frames.empty() && frames.back() < asked.back()) {
+    const std::vector<std::string>& names = project.capture().frames;
+    plan.notes.push_back(
+        fmt::format("every {}: frame {} is the last that is solved, what follows until {} is not",
+                    request.every, names[static_cast<std::size_t>(frames.back().value)],
+                    names[static_cast<std::size_t>(asked.back().value)]));
   }
   plan.turns = turnsOf(project, frames);
   return plan;

@@ -268,11 +268,26 @@ TEST_F(TakeRun, AFailedLeadShortensIt) {
   };
   RunRequest request = framesOf({3, 4, 5});
   request.overlap = 2;
-  const JobFinished finished = house_.finish(house_.open(), request);
-  ASSERT_EQ(finished.failed.size(), 1u);
-  EXPECT_TRUE(finished.failed.front().ref.lead);
+  int told = 0;
+  JobFinished finished;
+  for (const JobEvent& event : house_.run(house_.open(), request)) {
+    if (const auto* failed = std::get_if<StepFailed>(&event)) told += failed->ref.lead;
+    if (const auto* end = std::get_if<JobFinished>(&event)) finished = *end;
+  }
+  EXPECT_EQ(told, 1);
+  EXPECT_EQ(finished.outcome, JobOutcome::Done) << "all that was asked for is there";
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"002", "005", 1, 1}));
   EXPECT_EQ(house_.hooks.computed.at("materials.bake"), 3);
+}
+
+TEST_F(TakeRun, AScoutSaysWhereItEnds) {
+  house_.newProject();
+  RunRequest request;
+  request.every = 2;
+  EXPECT_THAT(house_.finish(house_.open(), request).notes,
+              ElementsAre(HasSubstr("frame 004 is the last that is solved, what follows until 005 is not")));
+  request.every = 5;
+  EXPECT_THAT(house_.finish(house_.open(), request).notes, ::testing::IsEmpty());
 }
 
 TEST_F(TakeRun, TwoRunnersShareATakeWithoutDoingAnythingTwice) {
