@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "app/cli/commands.h"
@@ -79,6 +80,9 @@ int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
   } catch (const Error& e) {
     console.error(e.what());
     return exitCode(e.kind());
+  } catch (const std::filesystem::filesystem_error& e) {
+    console.error(fmt::format("{}; expected a place that can be read and written, with room left", e.what()));
+    return exitCode(Error::Kind::Storage);
   } catch (const std::bad_alloc&) {
     console.error("out of memory; close other programs or ask for less");
     return exitCode(Error::Kind::OutOfMemory);

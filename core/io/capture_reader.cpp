@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 #include "core/base/error.h"
@@ -73,7 +74,10 @@ void holdOut(CaptureDescription& d, const std::vector<std::string>& wanted) {
 void dropEmptyCameras(CaptureDescription& d, const fs::path& folder) {
   std::vector<DescribedCamera> kept;
   for (DescribedCamera& c : d.cameras) {
-    std::erase_if(c.pictures, [](const auto& p) { return !fs::exists(p.second); });
+    std::erase_if(c.pictures, [](const auto& p) {
+      std::error_code out_of_reach;
+      return !fs::exists(p.second, out_of_reach);
+    });
     if (c.pictures.empty() && c.split == Split::Train) {
       d.warnings.push_back(
           fmt::format("\"{}\": camera {}: expected pictures in \"{}\", found none; the camera is left out",
@@ -148,6 +152,29 @@ std::vector<PictureFiles> filesOf(const DescribedCamera& c, const std::vector<st
   return row;
 }
 
+// Frames that no camera has leave a gap in numbers that otherwise keep their step.
+void warnOfMissingFrames(CaptureDescription& d, const std::vector<std::string>& frames) {
+  constexpr std::size_t kMostDigits = 18;  // of a 64-bit number
+  std::vector<std::int64_t> numbers;
+  for (const std::string& name : frames) {
+    if (name.empty() || name.size() > kMostDigits ||
+        name.find_first_not_of("0123456789") != std::string::npos)
+      return;
+    numbers.push_back(std::stoll(name));
+  }
+  std::int64_t step = 0;
+  for (std::size_t f = 1; f < numbers.size(); ++f)
+    step = f == 1 ? numbers[1] - numbers[0] : std::min(step, numbers[f] - numbers[f - 1]);
+  std::vector<std::string> gaps;
+  for (std::size_t f = 1; f < numbers.size(); ++f) {
+    if (numbers[f] - numbers[f - 1] > step) gaps.push_back(frames[f - 1] + " and " + frames[f]);
+  }
+  if (gaps.empty()) return;
+  d.warnings.push_back(
+      fmt::format("no camera has a picture between frames {}; they are solved as if one followed the other",
+                  shortList(gaps)));
+}
+
 // Says which training pictures and which masks are not there.
 void warnOfGaps(CaptureDescription& d, const PictureTable& files, const std::vector<std::string>& frames,
                 MaskKind kind) {
@@ -192,6 +219,7 @@ ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxi
     files.push_back(filesOf(c, set.frames, folder));
   }
   const MaskKind kind = maskKindOf(files);
+  warnOfMissingFrames(d, set.frames);
   warnOfGaps(d, files, set.frames, kind);
   set.masks = kind;
   set.seed_points = pointsOf(d, folder, d.warnings);

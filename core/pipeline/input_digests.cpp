@@ -65,8 +65,9 @@ Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame, Split
     const ViewIndex view{static_cast<std::int32_t>(i)};
     if (capture.views[i].split != split || !capture.source->has(view, frame)) continue;
     const std::vector<std::string> names = capture.source->files(view, frame);
-    // Gone since the capture was read: as if it had never been there.
-    if (!names.empty() && !std::filesystem::exists(names.front())) continue;
+    // Gone since the capture was read: as if it had never been there. Out of reach: unreadable.
+    std::error_code out_of_reach;
+    if (!names.empty() && !std::filesystem::exists(names.front(), out_of_reach) && !out_of_reach) continue;
     text += fmt::format("view {}:{}", capture.views[i].name.size(), capture.views[i].name);
     for (const std::string& name : names) text += fmt::format(" {}", fileText(*this, name));
     if (names.empty()) text += fmt::format(" {}", contentText(*capture.source, view, frame));

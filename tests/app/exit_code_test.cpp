@@ -165,6 +165,17 @@ TEST_F(ExitCode, AReadOnlyProjectCanBeLookedAtButNotRun) {
   fs::permissions(at("p.beam"), fs::perms(0755));
 }
 
+TEST_F(ExitCode, APlaceThatCannotBeWrittenIsAStorageError) {
+  std::ofstream(at("taken")) << "a file";
+  const std::string below = (at("taken") / "out").string();
+  for (const Words& words : {Words{"sample", below},
+                             Words{"new", below + ".beam", "--capture", SampleHouse::capture().string()}}) {
+    const Said said = beam(words);
+    EXPECT_EQ(said.code, 74) << said.err;
+    EXPECT_THAT(said.err, HasSubstr("taken"));
+  }
+}
+
 TEST_F(ExitCode, AFullDiskIsAStorageErrorAndCostsNothingThatWasFinished) {
   const Words words = Words{"process", SampleHouse::capture().string(), "--out", at("p.beam").string()} +
                       tiny() + Words{"--set", "surface.cap=2000"};

@@ -250,6 +250,29 @@ TEST(CaptureFormats, EveryNthCameraIsTheSameInEveryDescription) {
   EXPECT_THAT(errorOf(dir.path(), {.hold_out = {"1"}}, Error::Kind::Usage), HasSubstr("--hold-out"));
 }
 
+TEST(CaptureFormats, FramesThatNoCameraHasAreNamed) {
+  const TempDir dir;
+  for (const char* camera : {"a", "b"}) fs::create_directories(dir / "images" / camera);
+  const Image<u8vec3> picture(20, 12, u8vec3(9));
+  for (const char* frame : {"000010", "000012", "000014", "000020"}) {
+    for (const char* camera : {"a", "b"})
+      writePng(dir / "images" / camera / (std::string(frame) + ".png"), picture);
+  }
+  std::string frames;
+  for (const char* camera : {"a", "b"}) {
+    for (const char* frame : {"000010", "000012", "000014", "000020"})
+      frames += fmt::format(
+          R"({{"file_path": "images/{}/{}.png", "transform_matrix": [[1,0,0,{}],[0,0,-1,-3],[0,1,0,0.9],[0,0,0,1]]}},)",
+          camera, frame, *camera == 'a' ? -0.1 : 0.1);
+  }
+  frames.pop_back();
+  put(dir / "transforms.json",
+      R"({"fl_x": 24, "fl_y": 24, "cx": 10, "cy": 6, "w": 20, "h": 12, "frames": [)" + frames + "]}");
+  const std::vector<std::string> warnings = openCapture(dir.path()).warnings;
+  EXPECT_THAT(warnings,
+              ::testing::Contains(HasSubstr("no camera has a picture between frames 000014 and 000020;")));
+}
+
 TEST(CaptureFormats, MasksAreFoundByNameElseInAlphaElseByAKeyWithAConstantBorder) {
   const TempDir dir;
   put(dir / "dataset.json", kDataset);
