@@ -33,6 +33,21 @@ struct ViewEquations {
   std::vector<vec4> target, importance;
 
   std::size_t rows() const { return target.size(); }
+  float alpha(std::size_t row) const {
+    float sum = 0;
+    for (std::uint32_t k = first[row]; k < first[row + 1]; ++k) sum += weight[k];
+    return sum;
+  }
+  // W values, of one row.
+  vec4 blend(std::size_t row, const std::vector<vec4>& values) const {
+    vec4 sum(0);
+    for (std::uint32_t k = first[row]; k < first[row + 1]; ++k) sum += weight[k] * values[gaussian[k]];
+    return sum;
+  }
+  // Adds W^T value, of one row.
+  void spread(std::size_t row, vec4 value, std::vector<vec4>& out) const {
+    for (std::uint32_t k = first[row]; k < first[row + 1]; ++k) out[gaussian[k]] += weight[k] * value;
+  }
 };
 
 // Importance of a pixel and its target, w last. Base colour errors count as they are seen: slope of sRGB
@@ -315,12 +330,8 @@ class NormalEquations {
       const vec4 importance = v.importance[r];
       vec4 value = importance;
       if (kind == Row::Seen) value = vec4(glm::greaterThan(importance, vec4(0)));
-      if (kind == Row::Target) {
-        float alpha = 0;
-        for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) alpha += v.weight[k];
-        value = importance * v.target[r] / alpha;
-      }
-      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) out[v.gaussian[k]] += v.weight[k] * value;
+      if (kind == Row::Target) value = importance * v.target[r] / v.alpha(r);
+      v.spread(r, value, out);
     }
   }
 
@@ -342,16 +353,10 @@ class NormalEquations {
   void differences(const ViewEquations& v, std::vector<vec4>& out, Evaluate&& evaluate) const {
     const std::vector<vec4> values = valuesIn(v, evaluate);
     for (std::size_t r = 0; r < v.rows(); ++r) {
-      float alpha = 0;
-      vec4 sum(0);
-      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) {
-        alpha += v.weight[k];
-        sum += v.weight[k] * values[v.gaussian[k]];
-      }
-      vec4 apart = glm::abs(v.target[r] - sum) / alpha;
+      const float alpha = v.alpha(r);
+      vec4 apart = glm::abs(v.target[r] - v.blend(r, values)) / alpha;
       for (int c = 0; c < 3; ++c) apart[c] *= srgbSlope(std::max(v.target[r][c] / alpha, kSlopeFloor));
-      apart *= v.importance[r];
-      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) out[v.gaussian[k]] += v.weight[k] * apart;
+      v.spread(r, apart * v.importance[r], out);
     }
   }
 
@@ -361,10 +366,8 @@ class NormalEquations {
               bool against_target) const {
     const std::vector<vec4> values = valuesIn(v, evaluate);
     for (std::size_t r = 0; r < v.rows(); ++r) {
-      vec4 sum(0);
-      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) sum += v.weight[k] * values[v.gaussian[k]];
-      const vec4 value = v.importance[r] * (against_target ? v.target[r] - sum : sum);
-      for (std::uint32_t k = v.first[r]; k < v.first[r + 1]; ++k) out[v.gaussian[k]] += v.weight[k] * value;
+      const vec4 sum = v.blend(r, values);
+      v.spread(r, v.importance[r] * (against_target ? v.target[r] - sum : sum), out);
     }
   }
 

@@ -70,10 +70,10 @@ void fitByLinearSolve(const MapSource& maps, const GaussianCloud& cloud, const M
                       const FitMaterialsOptions& options, ComputeDevice& device, Progress& progress,
                       Materials& out) {
   const bool held = options.later.memory_frames > 0 || options.later.occlusion_memory_frames > 0;
-  MaterialCoefficients start;
-  if (before && held) start = coefficientsOf(*before);
+  MaterialCoefficients earlier;
+  if (before && held) earlier = coefficientsOf(*before);
   const MaterialCoefficients x =
-      fitLinear(maps, cloud, start.empty() ? nullptr : &start, options, device, progress);
+      fitLinear(maps, cloud, earlier.empty() ? nullptr : &earlier, options, device, progress);
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (int c = 0; c < 3; ++c) out.base_color.coefficients[i * 3 + c] = x[i][c];
     out.ambient_occlusion.coefficients[i] = x[i].w;
