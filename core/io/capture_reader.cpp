@@ -108,6 +108,8 @@ PointCloud pointsOf(const CaptureDescription& d, const fs::path& folder, std::ve
   return d.points;
 }
 
+bool isNumber(const std::string& name) { return name.find_first_not_of("0123456789") == std::string::npos; }
+
 // Names by their numbers where all are numbers ("2" before "10"), else as text.
 std::vector<std::string> framesOf(const CaptureDescription& d) {
   std::set<std::string> names;
@@ -115,10 +117,7 @@ std::vector<std::string> framesOf(const CaptureDescription& d) {
     for (const auto& [frame, file] : c.pictures) names.insert(frame);
   }
   std::vector<std::string> frames(names.begin(), names.end());
-  const auto numeric = [](const std::string& s) {
-    return s.find_first_not_of("0123456789") == std::string::npos;
-  };
-  if (std::all_of(frames.begin(), frames.end(), numeric)) {
+  if (std::all_of(frames.begin(), frames.end(), isNumber)) {
     const auto digits = [](const std::string& s) {
       return s.substr(std::min(s.find_first_not_of('0'), s.size()));
     };
@@ -157,9 +156,7 @@ void warnOfMissingFrames(CaptureDescription& d, const std::vector<std::string>& 
   constexpr std::size_t kMostDigits = 18;  // of a 64-bit number
   std::vector<std::int64_t> numbers;
   for (const std::string& name : frames) {
-    if (name.empty() || name.size() > kMostDigits ||
-        name.find_first_not_of("0123456789") != std::string::npos)
-      return;
+    if (name.empty() || name.size() > kMostDigits || !isNumber(name)) return;
     numbers.push_back(std::stoll(name));
   }
   std::int64_t step = 0;
