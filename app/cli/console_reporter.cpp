@@ -40,7 +40,8 @@ void ConsoleReporter::show(const StepFinished& e) {
 }
 
 void ConsoleReporter::show(const StepFailed& e) {
-  console_.error(fmt::format("{}: {}", nameOf(e.ref), e.message));
+  const std::string text = fmt::format("{}: {}", nameOf(e.ref), e.message);
+  e.ref.lead ? console_.warning(text) : console_.error(text);
 }
 
 void ConsoleReporter::show(const JobFinished& e) {

@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
-#include <filesystem>
 #include <new>
 
 #include "app/cli/commands.h"
 #include "app/cli/interrupt.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/io/file.h"
 
 namespace beam {
 namespace {
@@ -81,8 +81,9 @@ int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
     console.error(e.what());
     return exitCode(e.kind());
   } catch (const std::filesystem::filesystem_error& e) {
-    console.error(fmt::format("{}; expected a place that can be read and written, with room left", e.what()));
-    return exitCode(Error::Kind::Storage);
+    const Error storage = storageError(e);
+    console.error(storage.what());
+    return exitCode(storage.kind());
   } catch (const std::bad_alloc&) {
     console.error("out of memory; close other programs or ask for less");
     return exitCode(Error::Kind::OutOfMemory);

@@ -129,4 +129,9 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
   writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
+Error storageError(const std::filesystem::filesystem_error& refused) {
+  return {Error::Kind::Storage,
+          fmt::format("{}; expected a place that can be read and written, with room left", refused.what())};
+}
+
 }  // namespace beam

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/error.h"
+
 namespace beam {
 
 // The whole file. Throws Error{Data} when it is missing, no regular file or larger than `max_bytes`;
@@ -24,5 +26,8 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
 
 // Syncs a file or folder that was written otherwise; Error{Storage} on failure.
 void syncPath(const std::filesystem::path& path);
+
+// What std::filesystem refused between our own checks, for the borders where it arrives: Error{Storage}.
+Error storageError(const std::filesystem::filesystem_error& refused);
 
 }  // namespace beam

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <filesystem>
 #include <new>
 #include <thread>
 
@@ -13,6 +12,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
+#include "core/io/file.h"
 #include "core/pipeline/version.h"
 #include "core/render/device.h"
 
@@ -57,8 +57,8 @@ JobFinished Job::run(const RunRequest& request) {
   } catch (const Error& e) {
     fail(e.kind(), e.what());
   } catch (const std::filesystem::filesystem_error& e) {
-    fail(Error::Kind::Storage,
-         fmt::format("{}; expected a place that can be read and written, with room left", e.what()));
+    const Error storage = storageError(e);
+    fail(storage.kind(), storage.what());
   } catch (const std::bad_alloc&) {
     fail(Error::Kind::OutOfMemory,
          fmt::format(
@@ -336,14 +336,11 @@ void Job::failFrame(const StepRef& ref, const std::string& message) {
   } catch (const Error& e) {
     logWarning("the failure of frame {} could not be noted: {}", ref.frame_name, e.what());
   }
+  logDebug("{}", told);
   const StepFailed failed{ref, message};
   tell_(failed);
-  if (turn_ && turn_->lead()) {  // nobody asked for it: what it was to lead begins anew
-    logWarning("{}", told);
-    return;
-  }
-  logDebug("{}", told);
-  finished_.failed.push_back(failed);
+  // Nobody asked for a lead: what it was to lead begins anew.
+  if (!ref.lead) finished_.failed.push_back(failed);
 }
 
 void Job::acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds) {
