@@ -8,7 +8,7 @@ namespace beam {
 namespace {
 
 constexpr float kRadiansPerPixel = 0.007f;
-constexpr float kSteepest_rad = 1.5533f;  // 89 degrees: at the pole "up" has no direction on the screen
+constexpr float kSteepest_rad = 1.5533f;  // 89 degrees: a drag over the pole would turn the scene upside down
 constexpr float kNearest_m = 0.02f, kFarthest_m = 500.0f;
 
 struct Axes {
@@ -22,6 +22,10 @@ Axes axesOf(float azimuth, float elevation) {
   return {right, glm::cross(forward, right), forward};
 }
 
+float metresPerPixel(const OrbitCamera& orbit, int height_px) {
+  return 2 * orbit.distance_m * std::tan(orbit.field_of_view_rad / 2) / static_cast<float>(height_px);
+}
+
 }  // namespace
 
 void OrbitCamera::orbit(vec2 drag_px) {
@@ -31,13 +35,34 @@ void OrbitCamera::orbit(vec2 drag_px) {
 
 void OrbitCamera::pan(vec2 drag_px, int height_px) {
   const Axes axes = axesOf(azimuth_rad, elevation_rad);
-  const float metres_per_pixel =
-      2 * distance_m * std::tan(field_of_view_rad / 2) / static_cast<float>(height_px);
-  target_m -= metres_per_pixel * (drag_px.x * axes.right + drag_px.y * axes.down);
+  target_m -= metresPerPixel(*this, height_px) * (drag_px.x * axes.right + drag_px.y * axes.down);
 }
 
 void OrbitCamera::zoom(float steps) {
   distance_m = std::clamp(distance_m * std::pow(0.88f, steps), kNearest_m, kFarthest_m);
+}
+
+void OrbitCamera::zoomAt(float steps, vec2 pointer_px, ivec2 size_px) {
+  const float before = metresPerPixel(*this, size_px.y);
+  zoom(steps);
+  const vec2 from_middle = (before - metresPerPixel(*this, size_px.y)) * (pointer_px - 0.5f * vec2(size_px));
+  const Axes axes = axesOf(azimuth_rad, elevation_rad);
+  target_m += from_middle.x * axes.right + from_middle.y * axes.down;
+}
+
+void OrbitCamera::turnTo(ViewPreset preset) {
+  const bool pole = preset == ViewPreset::Top || preset == ViewPreset::Bottom;
+  elevation_rad = !pole ? 0.0f : preset == ViewPreset::Top ? kPi / 2 : -kPi / 2;
+  azimuth_rad = preset == ViewPreset::Right  ? kPi / 2
+                : preset == ViewPreset::Left ? -kPi / 2
+                : preset == ViewPreset::Back ? kPi
+                                             : 0.0f;
+}
+
+void OrbitCamera::focusOn(vec3 point_m) {
+  const vec3 eye = target_m - distance_m * axesOf(azimuth_rad, elevation_rad).forward;
+  distance_m = std::clamp(glm::distance(eye, point_m), kNearest_m, kFarthest_m);
+  target_m = point_m;
 }
 
 void OrbitCamera::frame(const Bounds& bounds) {

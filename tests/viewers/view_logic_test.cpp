@@ -12,6 +12,7 @@
 #include "viewers/latest_worker.h"
 #include "viewers/orbit_camera.h"
 #include "viewers/splat/channel_picture.h"
+#include "viewers/view_keys.h"
 #include "viewers/view_state.h"
 
 namespace beam {
@@ -70,6 +71,76 @@ TEST(OrbitCamera, ZoomsInAndOutToTheSameDistance) {
   EXPECT_LT(orbit.distance_m, 3);
   orbit.zoom(-3);
   EXPECT_NEAR(orbit.distance_m, 3, 1e-5);
+}
+
+TEST(OrbitCamera, ZoomsToThePointThatLiesUnderThePointer) {
+  const ivec2 size(640, 480);
+  for (const vec2& pointer : {vec2(100, 400), vec2(320, 240), vec2(639, 0)}) {
+    OrbitCamera orbit{.target_m = vec3(0.4f, 1, -2), .azimuth_rad = 0.7f, .elevation_rad = 0.4f};
+    const Camera before = orbit.camera(size.x, size.y);
+    const vec3 held(inverse(before.camera_from_world) *
+                    (static_cast<double>(orbit.distance_m) * rayOf(before.intrinsics, dvec2(pointer))));
+    for (const float steps : {2.0f, 0.25f, -5.0f}) {
+      orbit.zoomAt(steps, pointer, size);
+      const Camera after = orbit.camera(size.x, size.y);
+      EXPECT_NEAR(pixelOf(after, held).x, pointer.x, 0.02);
+      EXPECT_NEAR(pixelOf(after, held).y, pointer.y, 0.02);
+      EXPECT_NEAR((after.camera_from_world * dvec3(held)).z, orbit.distance_m, 1e-4);
+    }
+    EXPECT_GT(orbit.distance_m, 3);
+  }
+}
+
+TEST(OrbitCamera, StaysWhereItIsWhenItCannotComeCloser) {
+  OrbitCamera orbit;
+  orbit.zoomAt(1000, {10, 10}, {640, 480});
+  const vec3 target = orbit.target_m;
+  orbit.zoomAt(10, {10, 10}, {640, 480});
+  EXPECT_EQ(orbit.target_m, target);
+}
+
+TEST(OrbitCamera, LooksAlongTheAxisOfItsPresetAtTheSameTarget) {
+  const std::pair<ViewPreset, dvec3> eyes[] = {
+      {ViewPreset::Front, {0, 0, 1}}, {ViewPreset::Back, {0, 0, -1}}, {ViewPreset::Right, {1, 0, 0}},
+      {ViewPreset::Left, {-1, 0, 0}}, {ViewPreset::Top, {0, 1, 0}},   {ViewPreset::Bottom, {0, -1, 0}}};
+  for (const auto& [preset, eye] : eyes) {
+    OrbitCamera orbit{.target_m = vec3(0.3f, 1.1f, -0.4f), .azimuth_rad = 2.2f, .distance_m = 1.7f};
+    orbit.turnTo(preset);
+    const Camera camera = orbit.camera(200, 200);
+    EXPECT_NEAR(glm::distance(centerOf(camera), dvec3(orbit.target_m) + 1.7 * eye), 0, 1e-5);
+    EXPECT_EQ(orbit.target_m, vec3(0.3f, 1.1f, -0.4f));
+  }
+}
+
+TEST(OrbitCamera, HasXToTheRightFromTheTopAndTurnsOnFromThere) {
+  OrbitCamera orbit{.target_m = vec3(0)};
+  orbit.turnTo(ViewPreset::Top);
+  EXPECT_NEAR(pixelOf(orbit.camera(200, 200), vec3(0.2f, 0, 0)).y, 100, 1e-3);
+  EXPECT_GT(pixelOf(orbit.camera(200, 200), vec3(0.2f, 0, 0)).x, 110);
+  orbit.orbit({0, -100});
+  EXPECT_LT(orbit.elevation_rad, 1.0f);
+}
+
+TEST(OrbitCamera, FocusesOnAPointFromWhereTheEyeLooksAtIt) {
+  OrbitCamera orbit{.azimuth_rad = 0.7f, .elevation_rad = 0.4f};
+  const dvec3 eye = centerOf(orbit.camera(200, 200));
+  const vec3 point(0.3f, 1.4f, 0.2f);
+  orbit.focusOn(point);
+  EXPECT_NEAR(orbit.distance_m, glm::distance(eye, dvec3(point)), 1e-5);
+  EXPECT_NEAR(pixelOf(orbit.camera(200, 200), point).x, 100, 1e-3);
+  EXPECT_NEAR(pixelOf(orbit.camera(200, 200), point).y, 100, 1e-3);
+  EXPECT_EQ(orbit.azimuth_rad, 0.7f);
+  EXPECT_EQ(orbit.elevation_rad, 0.4f);
+}
+
+TEST(ViewKeys, ReadTheNumberPadWithAndWithoutNumLock) {
+  const auto preset = [](int key, Qt::KeyboardModifiers with) {
+    return presetOf(QKeyEvent(QEvent::KeyPress, key, with));
+  };
+  EXPECT_EQ(preset(Qt::Key_1, Qt::KeypadModifier), ViewPreset::Front);
+  EXPECT_EQ(preset(Qt::Key_PageDown, Qt::KeypadModifier), ViewPreset::Right);
+  EXPECT_EQ(preset(Qt::Key_7, Qt::KeypadModifier | Qt::ControlModifier), ViewPreset::Bottom);
+  EXPECT_EQ(preset(Qt::Key_1, Qt::NoModifier), std::nullopt);
 }
 
 TEST(OrbitCamera, IsRecoveredFromTheCameraItMakes) {
