@@ -1,112 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/scene/scene_view.h"
 
-#include <QVTKOpenGLNativeWidget.h>
-#include <vtkActor.h>
-#include <vtkBillboardTextActor3D.h>
-#include <vtkCamera.h>
-#include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkInteractorStyleTerrain.h>
+#include <vtkInteractorObserver.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindowInteractor.h>
-#include <vtkRenderer.h>
 #include <vtkTextProperty.h>
 
-#include <QHBoxLayout>
-#include <QKeyEvent>
-#include <QLabel>
-#include <QMouseEvent>
-#include <QToolButton>
 #include <QVBoxLayout>
 
-#include <algorithm>
-#include <array>
-#include <deque>
-#include <functional>
-
 #include "core/base/error.h"
-#include "viewers/latest_worker.h"
-#include "viewers/orbit_camera.h"
-#include "viewers/scene/vtk_convert.h"
-#include "viewers/splat/splat_view.h"
+#include "viewers/scene/scene_state.h"
 
 namespace beam {
 namespace {
 
-constexpr std::size_t kMostEllipsoids = 6000;
-constexpr float kEllipsoidSigmas = 2;
 constexpr float kGridExtent_m = 2, kGridCell_m = 0.25f;
+constexpr int kRest_ms = 160;  // without movement before the whole mesh
 
-const std::array<const char*, kSceneLayerCount> kTitles{"Cameras", "Seed points",   "Gaussians",
-                                                        "Mesh",    "Grid and axes", "Joints"};
+struct LayerWords {
+  const char *title, *tip;
+};
+const std::array<LayerWords, kSceneLayerCount> kWords{
+    {{"Cameras", "The capture's cameras: blue for fitting, orange for testing (K)"},
+     {"Seed points", "Points that came with the capture"},
+     {"Gaussians", "The largest Gaussians as ellipsoids"},
+     {"Mesh", "The surface as triangles"},
+     {"Grid and axes", "The floor in cells of 25 cm, and the world's axes (G)"},
+     {"Joints", "The joints that move the skin; press one to see its influence (J)"}}};
 
-template <class T>
-vtkSmartPointer<T> make() {
-  return vtkSmartPointer<T>::New();
+vtkSmartPointer<vtkActor> emptyActor() {
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  auto mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
+  mapper->SetInputData(vtkSmartPointer<vtkPolyData>::New());
+  actor->SetMapper(mapper);
+  return actor;
 }
 
 }  // namespace
 
-struct SceneView::State {
-  explicit State(SceneView& o) : owner(o) {}
-
-  SceneView& owner;
-  QVTKOpenGLNativeWidget* vtk = nullptr;
-  QLabel* facts = nullptr;
-  std::array<QToolButton*, kSceneLayerCount> toggles{};
-  vtkSmartPointer<vtkGenericOpenGLRenderWindow> window = make<vtkGenericOpenGLRenderWindow>();
-  vtkSmartPointer<vtkRenderer> renderer = make<vtkRenderer>();
-  vtkSmartPointer<vtkRenderer> overlay = make<vtkRenderer>();  // joints lie under the skin, and are seen
-  std::array<vtkSmartPointer<vtkActor>, kSceneLayerCount> actors;
-  std::array<vtkSmartPointer<vtkBillboardTextActor3D>, 3> axis_names;
-  std::array<QString, kSceneLayerCount> counts;
-  Bounds bounds{vec3(0, 0.9f, 0), 2.5f};
-  bool framed = false;
-  std::shared_ptr<const GaussianCloud> cloud;
-  std::shared_ptr<const std::vector<float>> influence;
-  JointTrails trails;
-  QString joint_hint;
-  int picked_joint = -1;
-  QPointF pressed_at;
-  // A layer that is replaced while it is built never arrives; the newest always does.
-  std::array<int, kSceneLayerCount> tickets{}, arrived{};
-  std::array<LatestWorker, kSceneLayerCount> workers;  // last: they stop first
-
-  void addActors();
-  void layOut();
-  void show(SceneLayer layer, const PolyData& data, const QString& count);
-  void build(SceneLayer layer, std::function<PolyData()> make_data, const QString& count);
-  void buildCloud();
-  void buildJoints();
-  void updateFacts();
-  void render() const { window->Render(); }
-};
-
 void SceneView::State::addActors() {
   for (auto& actor : actors) {
-    actor = make<vtkActor>();
-    auto mapper = make<vtkPolyDataMapper>();
-    mapper->SetInputData(make<vtkPolyData>());
-    actor->SetMapper(mapper);
+    actor = emptyActor();
     (&actor == &actors[static_cast<int>(SceneLayer::Joints)] ? overlay : renderer)->AddActor(actor);
   }
-  const auto property = [&](SceneLayer layer) { return actors[static_cast<int>(layer)]->GetProperty(); };
-  for (const SceneLayer flat :
-       {SceneLayer::Cameras, SceneLayer::SeedPoints, SceneLayer::Grid, SceneLayer::Joints})
-    property(flat)->LightingOff();
-  property(SceneLayer::Cameras)->SetLineWidth(1.4f);
-  property(SceneLayer::SeedPoints)->SetPointSize(3);
-  property(SceneLayer::Joints)->SetPointSize(7);
-  property(SceneLayer::Joints)->SetLineWidth(1.6f);
-  for (const SceneLayer solid : {SceneLayer::Gaussians, SceneLayer::Mesh}) {
-    property(solid)->SetAmbient(0.35);
-    property(solid)->SetDiffuse(0.65);
-    property(solid)->SetInterpolationToGouraud();
+  coarse_mesh = emptyActor();
+  renderer->AddActor(coarse_mesh);
+  mark = emptyActor();
+  overlay->AddActor(mark);
+  const auto actor = [&](SceneLayer layer) { return actors[static_cast<int>(layer)].Get(); };
+  for (vtkActor* flat : {actor(SceneLayer::Cameras), actor(SceneLayer::SeedPoints), actor(SceneLayer::Grid),
+                         actor(SceneLayer::Joints), mark.Get()})
+    flat->GetProperty()->LightingOff();
+  actor(SceneLayer::Cameras)->GetProperty()->SetLineWidth(1.4f);
+  mark->GetProperty()->SetLineWidth(3);
+  actor(SceneLayer::SeedPoints)->GetProperty()->SetPointSize(3);
+  actor(SceneLayer::Joints)->GetProperty()->SetLineWidth(1.6f);
+  for (vtkActor* solid : {actor(SceneLayer::Gaussians), actor(SceneLayer::Mesh), coarse_mesh.Get()}) {
+    solid->GetProperty()->SetAmbient(0.35);
+    solid->GetProperty()->SetDiffuse(0.65);
+    solid->GetProperty()->SetInterpolationToGouraud();
   }
   const std::array<const char*, 3> names{"X", "Y up", "Z"};
   for (int i = 0; i < 3; ++i) {
-    axis_names[i] = make<vtkBillboardTextActor3D>();
+    axis_names[i] = vtkSmartPointer<vtkBillboardTextActor3D>::New();
     axis_names[i]->SetInput(names[i]);
     dvec3 at(0);
     at[i] = 0.52 * kGridExtent_m;
@@ -118,152 +75,95 @@ void SceneView::State::addActors() {
 }
 
 void SceneView::State::layOut() {
-  auto* row = new QHBoxLayout;
+  auto* row = new WrappingRow(6);
   row->setContentsMargins(8, 6, 8, 6);
-  row->setSpacing(6);
   for (int i = 0; i < kSceneLayerCount; ++i) {
     auto* button = new QToolButton;
-    button->setText(kTitles[i]);
+    button->setText(kWords[i].title);
+    button->setToolTip(kWords[i].tip);
     button->setCheckable(true);
-    button->setChecked(true);
-    button->setFocusPolicy(Qt::NoFocus);
+    button->setFocusPolicy(Qt::StrongFocus);
     const auto layer = static_cast<SceneLayer>(i);
     QObject::connect(button, &QToolButton::toggled, &owner,
                      [this, layer](bool on) { owner.setLayerShown(layer, on); });
     row->addWidget(button);
     toggles[i] = button;
   }
-  row->addStretch();
-  facts = new QLabel;
+  facts = new ElidedLine;
   facts->setObjectName("quiet");
   facts->setContentsMargins(10, 0, 10, 6);
-  facts->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // words must not widen the window
   vtk = new QVTKOpenGLNativeWidget;
   vtk->setRenderWindow(window.Get());
+  // The keys of VTK (quit, wireframe, pick, stereo ...) and its mouse would be a second hand on the camera.
+  window->GetInteractor()->SetInteractorStyle(nullptr);
+  vtk->setFocusPolicy(Qt::StrongFocus);
+  vtk->setMouseTracking(true);
+  vtk->installEventFilter(&owner);
+  labels = new SceneLabels(*this, vtk);
   auto* column = new QVBoxLayout(&owner);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
   column->addLayout(row);
   column->addWidget(facts);
   column->addWidget(vtk, 1);
+  owner.setFocusProxy(vtk);
 }
 
-void SceneView::State::updateFacts() {
-  QStringList words{"world axes, +Y up, metres"};
-  for (const QString& count : counts) {
-    if (!count.isEmpty()) words << count;
-  }
-  if (!joint_hint.isEmpty()) words << joint_hint;
-  facts->setText(words.join(" · "));
-}
-
-void SceneView::State::show(SceneLayer layer, const PolyData& data, const QString& count) {
-  const int i = static_cast<int>(layer);
-  static_cast<vtkPolyDataMapper*>(actors[i]->GetMapper())->SetInputData(data);
-  counts[i] = count;
-  arrived[i] = tickets[i];
-  updateFacts();
-  render();
-}
-
-void SceneView::State::build(SceneLayer layer, std::function<PolyData()> make_data, const QString& count) {
-  const int ticket = ++tickets[static_cast<int>(layer)];
-  if (!make_data) {
-    show(layer, make<vtkPolyData>(), {});
-    return;
-  }
-  workers[static_cast<int>(layer)].submit([this, layer, make_data = std::move(make_data), count, ticket] {
-    // Handed over whole: who drops one of several references to a data object walks it for cycles
-    // (vtkGarbageCollector), which must not meet the last reference dropped by another thread.
-    PolyData data = make_data();
-    QMetaObject::invokeMethod(
-        &owner,
-        [this, layer, data = std::move(data), count, ticket] {
-          if (tickets[static_cast<int>(layer)] == ticket) show(layer, data, count);
-        },
-        Qt::QueuedConnection);
-  });
+void SceneView::State::setUpWindow() {
+  window->SetNumberOfLayers(2);
+  window->SetMultiSamples(0);
+  window->AddRenderer(renderer);
+  overlay->SetLayer(1);
+  overlay->InteractiveOff();
+  overlay->SetActiveCamera(renderer->GetActiveCamera());
+  window->AddRenderer(overlay);
+  renderer->SetBackground(0.106, 0.110, 0.118);
+  rest_timer.setSingleShot(true);
+  rest_timer.setInterval(kRest_ms);
+  QObject::connect(&rest_timer, &QTimer::timeout, &owner, [this] { rest(); });
+  render_timer.setSingleShot(true);
+  render_timer.setInterval(0);
+  QObject::connect(&render_timer, &QTimer::timeout, &owner, [this] { render(); });
 }
 
 SceneView::SceneView(QWidget* parent) : QWidget(parent), state_(std::make_unique<State>(*this)) {
   State& s = *state_;
   s.layOut();
   s.addActors();
-  s.window->SetNumberOfLayers(2);
-  s.window->AddRenderer(s.renderer);
-  s.overlay->SetLayer(1);
-  s.overlay->InteractiveOff();
-  s.overlay->SetActiveCamera(s.renderer->GetActiveCamera());
-  s.window->AddRenderer(s.overlay);
-  s.vtk->installEventFilter(this);
-  s.window->SetMultiSamples(0);
-  s.renderer->SetBackground(0.106, 0.110, 0.118);
-  s.vtk->interactor()->SetInteractorStyle(make<vtkInteractorStyleTerrain>());
+  s.setUpWindow();
   s.updateFacts();
-  s.show(SceneLayer::Grid, gridAndAxes(kGridExtent_m, kGridCell_m), {});
-  setLayerShown(SceneLayer::Mesh, false);
+  s.show(SceneLayer::Grid, {gridAndAxes(kGridExtent_m, kGridCell_m), {}}, {});
+  showLayersOfTheBeginning();
   goHome();
 }
 
 SceneView::~SceneView() = default;
 
+void SceneView::showLayersOfTheBeginning() {
+  // The mesh would hide the ellipsoids.
+  for (int i = 0; i < kSceneLayerCount; ++i)
+    setLayerShown(static_cast<SceneLayer>(i), i != static_cast<int>(SceneLayer::Mesh));
+}
+
 void SceneView::setCapture(std::shared_ptr<const CaptureSet> capture) {
   State& s = *state_;
-  s.framed = false;
-  if (!capture) {
-    s.build(SceneLayer::Cameras, {}, {});
-    s.build(SceneLayer::SeedPoints, {}, {});
-    return;
-  }
-  std::vector<vec3> eyes;
-  for (const View& view : capture->views) eyes.emplace_back(centerOf(view.camera));
-  s.bounds = boundsOf(eyes);
-  s.bounds.radius_m *= 0.8f;  // seen from outside, a ring of cameras fills less than its ball
-  std::size_t tests = 0;
-  for (const View& view : capture->views) tests += view.split == Split::Test ? 1 : 0;
-  const QString cameras = QString("%1 cameras, %2 of them test").arg(capture->views.size()).arg(tests);
-  const QString points = QString("%L1 seed points").arg(capture->seed_points.position_m.size());
-  s.build(
-      SceneLayer::Cameras,
-      [capture, size = 0.11 * s.bounds.radius_m] { return frustaOf(capture->views, size); }, cameras);
-  s.build(
-      SceneLayer::SeedPoints, [capture] { return pointsOf(capture->seed_points); }, points);
+  if (capture == s.capture && capture) return;
+  s.capture = std::move(capture);
+  s.look_through.reset();
+  s.marked.reset();
+  s.trails.clear();
+  s.joint_hint.clear();
+  setInfluence(-1, nullptr);
+  s.buildCapture();
+  s.buildMark();
+  showLayersOfTheBeginning();
   goHome();
-}
-
-void SceneView::State::buildCloud() {
-  if (!cloud || cloud->size() == 0) {
-    build(SceneLayer::Gaussians, {}, {});
-    return;
-  }
-  const QString count =
-      QString("%L1 of %L2 Gaussians").arg(std::min(cloud->size(), kMostEllipsoids)).arg(cloud->size());
-  const bool fits = influence && influence->size() == cloud->size();
-  build(
-      SceneLayer::Gaussians,
-      [shown = cloud, shares = fits ? influence : std::make_shared<const std::vector<float>>()] {
-        return ellipsoidsOf(*shown, kMostEllipsoids, kEllipsoidSigmas, *shares);
-      },
-      count);
-}
-
-void SceneView::State::buildJoints() {
-  if (trails.empty()) {
-    build(SceneLayer::Joints, {}, {});
-    return;
-  }
-  QString words = QString("%L1 joints").arg(trails.back().size());
-  if (trails.size() > 1) words += QString(" with trails of %1 frames").arg(trails.size());
-  words += picked_joint < 0
-               ? QString(", press one to see its influence")
-               : QString(", influence of joint %1 from indigo (little) to yellow (all)").arg(picked_joint);
-  build(
-      SceneLayer::Joints, [shown = trails, joint = picked_joint] { return jointsOf(shown, joint); }, words);
 }
 
 void SceneView::setCloud(std::shared_ptr<const GaussianCloud> cloud) {
   state_->cloud = std::move(cloud);
   state_->buildCloud();
+  state_->buildJoints();
 }
 
 void SceneView::setJoints(const std::vector<std::vector<vec3>>& trails, const QString& hint) {
@@ -286,101 +186,57 @@ void SceneView::setInfluence(int joint, std::shared_ptr<const std::vector<float>
 }
 
 int SceneView::jointAt(QPointF position) const {
-  constexpr double kReach_px = 12;
-  if (state_->trails.empty() || !layerShown(SceneLayer::Joints)) return -1;
-  const QPointF at = state_->vtk->mapFrom(this, position.toPoint());
-  const double ratio = devicePixelRatioF();
-  const dvec2 wanted(at.x() * ratio, (state_->vtk->height() - at.y()) * ratio);
-  double nearest = kReach_px * ratio;
-  int found = -1;
-  const std::vector<vec3>& joints = state_->trails.back();
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    state_->overlay->SetWorldPoint(joints[j].x, joints[j].y, joints[j].z, 1);
-    state_->overlay->WorldToDisplay();
-    const double* display = state_->overlay->GetDisplayPoint();
-    const double away = glm::distance(dvec2(display[0], display[1]), wanted);
-    if (away >= nearest) continue;
-    nearest = away;
-    found = static_cast<int>(j);
-  }
-  return found;
+  return state_->jointAt(state_->vtk->mapFrom(this, position.toPoint()));
 }
 
-// A press that does not become a drag picks; everything goes on to the camera.
-bool SceneView::eventFilter(QObject* watched, QEvent* event) {
-  constexpr double kStill_px = 4;
-  if (event->type() == QEvent::MouseButtonPress) {
-    state_->pressed_at = static_cast<QMouseEvent*>(event)->localPos();
-  } else if (event->type() == QEvent::MouseButtonRelease && !state_->trails.empty()) {
-    const auto* mouse = static_cast<QMouseEvent*>(event);
-    const QPointF moved = mouse->localPos() - state_->pressed_at;
-    if (mouse->button() == Qt::LeftButton && moved.manhattanLength() < kStill_px)
-      Q_EMIT jointPicked(jointAt(state_->vtk->mapTo(this, mouse->localPos().toPoint())));
-  }
-  return QWidget::eventFilter(watched, event);
-}
-
-void SceneView::setMesh(std::shared_ptr<const Mesh> mesh) {
-  State& s = *state_;
-  if (!mesh || mesh->triangles.empty()) {
-    s.build(SceneLayer::Mesh, {}, {});
-    return;
-  }
-  s.build(
-      SceneLayer::Mesh, [mesh] { return meshOf(*mesh); },
-      QString("%L1 triangles").arg(mesh->triangles.size()));
+std::optional<ViewIndex> SceneView::cameraAt(QPointF position) const {
+  return state_->cameraAt(state_->vtk->mapFrom(this, position.toPoint()));
 }
 
 void SceneView::setLayerShown(SceneLayer layer, bool shown) {
   State& s = *state_;
   const int i = static_cast<int>(layer);
-  s.actors[i]->SetVisibility(shown);
-  if (layer == SceneLayer::Grid) {
-    for (auto& name : s.axis_names) name->SetVisibility(shown);
-  }
+  if (s.shown[i] == shown) return;
+  s.shown[i] = shown;
   s.toggles[i]->setChecked(shown);
+  s.updateVisibility();
   s.render();
 }
 
-bool SceneView::layerShown(SceneLayer layer) const {
-  return state_->actors[static_cast<int>(layer)]->GetVisibility();
-}
+bool SceneView::layerShown(SceneLayer layer) const { return state_->shown[static_cast<int>(layer)]; }
 
-void SceneView::goHome() {
+void SceneView::markCamera(std::optional<ViewIndex> view) {
   State& s = *state_;
-  OrbitCamera orbit{.azimuth_rad = 0.6f, .elevation_rad = 0.35f};
-  orbit.frame(s.bounds);
-  const dvec3 eye = centerOf(orbit.camera(100, 100));
-  vtkCamera* camera = s.renderer->GetActiveCamera();
-  camera->SetPosition(eye.x, eye.y, eye.z);
-  camera->SetFocalPoint(orbit.target_m.x, orbit.target_m.y, orbit.target_m.z);
-  camera->SetViewUp(0, 1, 0);
-  camera->SetViewAngle(orbit.field_of_view_rad * 180 / kPi);
-  s.renderer->ResetCameraClippingRange();
+  if (view && (!s.capture || view->value < 0 || view->value >= static_cast<int>(s.capture->views.size())))
+    view.reset();
+  if (view == s.marked) return;
+  s.marked = view;
+  s.buildMark();
   s.render();
 }
 
-bool SceneView::handleKey(const QKeyEvent& event) {
-  if (event.modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) return false;
-  switch (event.key()) {
-    case Qt::Key_F:
-    case Qt::Key_H:
-      goHome();
-      return true;
-    case Qt::Key_K:
-      setLayerShown(SceneLayer::Cameras, !layerShown(SceneLayer::Cameras));
-      return true;
-    case Qt::Key_G:
-      setLayerShown(SceneLayer::Grid, !layerShown(SceneLayer::Grid));
-      return true;
-    case Qt::Key_J:
-      setLayerShown(SceneLayer::Joints, !layerShown(SceneLayer::Joints));
-      return true;
-    default:
-      return false;
+std::optional<ViewIndex> SceneView::markedCamera() const { return state_->marked; }
+std::optional<ViewIndex> SceneView::lookedThrough() const { return state_->look_through; }
+const OrbitCamera& SceneView::orbit() const { return state_->orbit; }
+
+std::size_t SceneView::drawnTriangles() const {
+  for (vtkActor* actor :
+       {state_->actors[static_cast<int>(SceneLayer::Mesh)].Get(), state_->coarse_mesh.Get()}) {
+    if (actor->GetVisibility())
+      return static_cast<std::size_t>(
+          static_cast<vtkPolyDataMapper*>(actor->GetMapper())->GetInput()->GetNumberOfPolys());
   }
+  return 0;
 }
 
-bool SceneView::settled() const { return state_->arrived == state_->tickets; }
+QImage SceneView::picture() {
+  state_->render();
+  return state_->vtk->grab().toImage();
+}
+
+bool SceneView::settled() const {
+  const State& s = *state_;
+  return s.arrived == s.tickets && !s.rest_timer.isActive() && !s.render_timer.isActive();
+}
 
 }  // namespace beam

@@ -121,25 +121,25 @@ vec3 jointColor(std::size_t joint) {
 
 }  // namespace
 
-PolyData frustaOf(const std::vector<View>& views, double length_m) {
+Frustum frustumOf(const Camera& camera, double length_m) {
+  const Rigid3 world_from_camera = inverse(camera.camera_from_world);
+  const double w = camera.width, h = camera.height;
+  const auto at = [&](double x, double y) {
+    return vec3(world_from_camera * (length_m * rayOf(camera.intrinsics, {x, y})));
+  };
+  return {vec3(world_from_camera.translation_m), at(0, 0), at(w, 0), at(w, h), at(0, h), at(w / 2, -h / 6)};
+}
+
+PolyData frustaOf(const std::vector<View>& views, double length_m, int marked) {
   Builder builder;
-  for (const View& view : views) {
-    const u8vec3 color = view.split == Split::Test ? kTestColor : kTrainColor;
-    const Rigid3 world_from_camera = inverse(view.camera.camera_from_world);
-    const double w = view.camera.width, h = view.camera.height;
-    const auto corner = [&](double x, double y) {
-      return builder.point(vec3(world_from_camera * (length_m * rayOf(view.camera.intrinsics, {x, y}))),
-                           color);
-    };
-    const vtkIdType eye = builder.point(vec3(world_from_camera.translation_m), color);
-    const std::array<vtkIdType, 4> corners{corner(0, 0), corner(w, 0), corner(w, h), corner(0, h)};
-    for (int i = 0; i < 4; ++i) {
-      builder.line(eye, corners[i]);
-      builder.line(corners[i], corners[(i + 1) % 4]);
-    }
-    const vtkIdType tip = corner(w / 2, -h / 6);
-    builder.line(corners[0], tip);
-    builder.line(tip, corners[1]);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (marked >= 0 && static_cast<int>(i) != marked) continue;
+    const u8vec3 by_split = views[i].split == Split::Test ? kTestColor : kTrainColor;
+    std::array<vtkIdType, 6> ids{};
+    const Frustum frustum = frustumOf(views[i].camera, length_m);
+    for (std::size_t k = 0; k < ids.size(); ++k)
+      ids[k] = builder.point(frustum[k], marked >= 0 ? kMarkColor : by_split);
+    for (const auto& [a, b] : kFrustumEdges) builder.line(ids[a], ids[b]);
   }
   return builder.build();
 }
@@ -187,18 +187,21 @@ PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas
 }
 
 PolyData jointsOf(const JointTrails& trails, int picked) {
+  constexpr float kFaint = 0.45f;
   Builder builder;
   if (trails.empty()) return builder.build();
   for (std::size_t j = 0; j < trails.back().size(); ++j) {
-    const vec3 color = static_cast<int>(j) == picked ? vec3(1) : jointColor(j);
+    const bool other = picked >= 0 && static_cast<int>(j) != picked;
+    if (static_cast<int>(j) == picked && trails.size() == 1) continue;  // the view draws a ring around it
+    const vec3 color = picked < 0 ? jointColor(j) : other ? kFaint * jointColor(j) : vec3(1);
     vtkIdType before = -1;
-    for (std::size_t t = 0; t < trails.size(); ++t) {
+    for (std::size_t t = other ? trails.size() - 1 : 0; t < trails.size(); ++t) {
       const float age = static_cast<float>(t + 1) / static_cast<float>(trails.size());
       const vtkIdType here = builder.point(trails[t][j], u8vec3(255.0f * color * (0.25f + 0.75f * age)));
       if (before >= 0) builder.line(before, here);
       before = here;
     }
-    builder.vertex(before);
+    if (picked < 0 || other) builder.vertex(before);
   }
   return builder.build();
 }

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the layers of the scene view hold, and how it gets there.
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+
+#include <QLocale>
+
+#include <algorithm>
+#include <limits>
+
+#include "viewers/scene/coarse_mesh.h"
+#include "viewers/scene/scene_state.h"
+#include "viewers/splat/splat_view.h"
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kMostEllipsoids = 6000;
+constexpr std::size_t kMostMovingTriangles = 60000;  // a software OpenGL draws them in about 40 ms
+constexpr float kEllipsoidSigmas = 2;
+constexpr float kJointSize_px = 7, kFaintJointSize_px = 3;
+
+QString numberText(std::size_t number) {
+  return QLocale(QLocale::English).toString(static_cast<qulonglong>(number));
+}
+
+// Of all of them: there are few, and none is a stray.
+Bounds boundsOfCameras(const std::vector<View>& views) {
+  if (views.empty()) return {};
+  vec3 low(std::numeric_limits<float>::max()), high(-low);
+  for (const View& view : views) {
+    const vec3 eye(centerOf(view.camera));
+    low = glm::min(low, eye);
+    high = glm::max(high, eye);
+  }
+  Bounds bounds{0.5f * (low + high), 0.1f};
+  for (const View& view : views)
+    bounds.radius_m = std::max(bounds.radius_m, glm::distance(bounds.center_m, vec3(centerOf(view.camera))));
+  bounds.radius_m *= 0.9f;  // seen from outside, a ring of cameras fills less than its ball
+  return bounds;
+}
+
+}  // namespace
+
+QString counted(std::size_t count, const QString& thing) {
+  return numberText(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+Bounds subjectBounds(const std::vector<vec3>& positions_m) {
+  constexpr float kReach = 4;  // a standing person reaches 2.5 times the median distance to the middle
+  if (positions_m.empty()) return {};
+  std::vector<float> values(positions_m.size());
+  const auto median = [&] {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  vec3 center;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(positions_m.begin(), positions_m.end(), values.begin(),
+                   [axis](const vec3& p) { return p[axis]; });
+    center[axis] = median();
+  }
+  std::transform(positions_m.begin(), positions_m.end(), values.begin(),
+                 [center](const vec3& p) { return glm::distance(p, center); });
+  const float reach_m = kReach * median();
+  std::vector<vec3> near;
+  std::copy_if(positions_m.begin(), positions_m.end(), std::back_inserter(near),
+               [&](const vec3& p) { return glm::distance(p, center) <= reach_m; });
+  return boundsOf(near);
+}
+
+void SceneView::State::updateFacts() {
+  QStringList words{"world axes, +Y up, metres"};
+  for (const QString& count : counts) {
+    if (!count.isEmpty()) words << count;
+  }
+  if (!joint_hint.isEmpty()) words << joint_hint;
+  facts->setWords(words.join(" · "));
+}
+
+void SceneView::State::updateVisibility() {
+  const auto is_shown = [&](SceneLayer layer) { return shown[static_cast<int>(layer)]; };
+  for (int i = 0; i < kSceneLayerCount; ++i) actors[i]->SetVisibility(shown[i]);
+  const bool stand_in =
+      moving && static_cast<vtkPolyDataMapper*>(coarse_mesh->GetMapper())->GetInput()->GetNumberOfPolys() > 0;
+  actors[static_cast<int>(SceneLayer::Mesh)]->SetVisibility(is_shown(SceneLayer::Mesh) && !stand_in);
+  coarse_mesh->SetVisibility(is_shown(SceneLayer::Mesh) && stand_in);
+  mark->SetVisibility(is_shown(SceneLayer::Cameras));
+  for (auto& name : axis_names) name->SetVisibility(is_shown(SceneLayer::Grid));
+}
+
+void SceneView::State::show(SceneLayer layer, const BuiltLayer& data, const QString& count) {
+  const int i = static_cast<int>(layer);
+  const auto put = [](vtkActor* actor, const PolyData& geometry) {
+    static_cast<vtkPolyDataMapper*>(actor->GetMapper())
+        ->SetInputData(geometry ? geometry : vtkSmartPointer<vtkPolyData>::New());
+  };
+  put(actors[i], data.full);
+  if (layer == SceneLayer::Mesh) put(coarse_mesh, data.coarse);
+  counts[i] = count;
+  arrived[i] = tickets[i];
+  updateFacts();
+  updateVisibility();
+  render();
+}
+
+void SceneView::State::build(SceneLayer layer, std::function<BuiltLayer()> make_data, const QString& count) {
+  const int ticket = ++tickets[static_cast<int>(layer)];
+  if (!make_data) {
+    show(layer, {}, {});
+    return;
+  }
+  workers[static_cast<int>(layer)].submit([this, layer, make_data = std::move(make_data), count, ticket] {
+    // Handed over whole: who drops one of several references to a data object walks it for cycles
+    // (vtkGarbageCollector), which must not meet the last reference dropped by another thread.
+    BuiltLayer data = make_data();
+    QMetaObject::invokeMethod(
+        &owner,
+        [this, layer, data = std::move(data), count, ticket] {
+          if (tickets[static_cast<int>(layer)] == ticket) show(layer, data, count);
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+void SceneView::State::buildCapture() {
+  if (!capture) {
+    home = {vec3(0, 0.9f, 0), 2.5f};
+    build(SceneLayer::Cameras, {}, {});
+    build(SceneLayer::SeedPoints, {}, {});
+    return;
+  }
+  home = boundsOfCameras(capture->views);
+  const auto tests =
+      static_cast<std::size_t>(std::count_if(capture->views.begin(), capture->views.end(),
+                                             [](const View& view) { return view.split == Split::Test; }));
+  QString cameras = counted(capture->views.size(), "camera");
+  if (tests > 0) cameras += ", " + numberText(tests) + " of them for testing";
+  build(
+      SceneLayer::Cameras,
+      [capture = capture, size = frustumLength()] {
+        return BuiltLayer{frustaOf(capture->views, size), {}};
+      },
+      cameras);
+  build(
+      SceneLayer::SeedPoints,
+      [capture = capture] {
+        return BuiltLayer{pointsOf(capture->seed_points), {}};
+      },
+      counted(capture->seed_points.position_m.size(), "seed point"));
+}
+
+// One pyramid: built at once, so that the list of cameras and the view agree.
+void SceneView::State::buildMark() {
+  const PolyData geometry =
+      marked ? frustaOf(capture->views, frustumLength(), marked->value) : vtkSmartPointer<vtkPolyData>::New();
+  static_cast<vtkPolyDataMapper*>(mark->GetMapper())->SetInputData(geometry);
+}
+
+void SceneView::State::buildCloud() {
+  if (!cloud || cloud->size() == 0) {
+    build(SceneLayer::Gaussians, {}, {});
+    return;
+  }
+  const QString count = cloud->size() <= kMostEllipsoids
+                            ? counted(cloud->size(), "Gaussian")
+                            : QString("the largest %1 of %2")
+                                  .arg(numberText(kMostEllipsoids), counted(cloud->size(), "Gaussian"));
+  build(
+      SceneLayer::Gaussians,
+      [shown = cloud, shares = influenceFits() ? influence : std::make_shared<const std::vector<float>>()] {
+        return BuiltLayer{ellipsoidsOf(*shown, kMostEllipsoids, kEllipsoidSigmas, *shares), {}};
+      },
+      count);
+}
+
+void SceneView::State::buildJoints() {
+  const int picked = influenceFits() ? picked_joint : -1;
+  actors[static_cast<int>(SceneLayer::Joints)]->GetProperty()->SetPointSize(picked < 0 ? kJointSize_px
+                                                                                       : kFaintJointSize_px);
+  labels->update();
+  if (trails.empty()) {
+    build(SceneLayer::Joints, {}, {});
+    return;
+  }
+  QString words = counted(trails.back().size(), "joint");
+  if (trails.size() > 1) words += " with trails of " + counted(trails.size(), "frame");
+  words += picked < 0 ? QString(", press one to see its influence")
+                      : QString(", influence of joint %1; press beside it to end").arg(picked);
+  build(
+      SceneLayer::Joints,
+      [shown = trails, picked] {
+        return BuiltLayer{jointsOf(shown, picked), {}};
+      },
+      words);
+}
+
+void SceneView::setMesh(std::shared_ptr<const Mesh> mesh) {
+  State& s = *state_;
+  s.mesh = std::move(mesh);
+  if (!s.mesh || s.mesh->triangles.empty()) {
+    s.build(SceneLayer::Mesh, {}, {});
+    return;
+  }
+  s.build(
+      SceneLayer::Mesh,
+      [mesh = s.mesh] {
+        BuiltLayer built{meshOf(*mesh), {}};
+        if (mesh->triangles.size() > kMostMovingTriangles)
+          built.coarse = meshOf(coarser(*mesh, kMostMovingTriangles));
+        return built;
+      },
+      counted(s.mesh->triangles.size(), "triangle"));
+}
+
+}  // namespace beam
