@@ -29,6 +29,8 @@ void JobBridge::start(const Project& project, const RunRequest& request,
 
 void JobBridge::requestStop() { runner_.requestStop(); }
 
+void JobBridge::requestStopAfter(StopAfter what) { runner_.requestStopAfter(what); }
+
 void JobBridge::drain() {
   if (auto preview = runner_.preview().latest(); preview && preview != shown_) {
     shown_ = std::move(preview);
@@ -44,6 +46,7 @@ void JobBridge::tell(const JobEvent& event) {
                  [this](const StepFinished& e) { Q_EMIT stepFinished(e); },
                  [this](const StepFailed& e) { Q_EMIT stepFailed(e); },
                  [this](const JobWarning& e) { Q_EMIT warned(QString::fromStdString(e.text)); },
+                 [this](const JobWaiting& e) { Q_EMIT waiting(e); },
                  [this](const JobFinished& e) {
                    busy_ = false;
                    timer_.stop();

@@ -19,6 +19,7 @@ class JobBridge final : public QObject {
   // Throws Error{Bug} while a job runs.
   void start(const Project& project, const RunRequest& request, std::shared_ptr<ComputeDevice> device);
   void requestStop();
+  void requestStopAfter(StopAfter what);
   // From start until finished() was emitted.
   bool busy() const { return busy_; }
 
@@ -29,6 +30,7 @@ class JobBridge final : public QObject {
   void stepFinished(const beam::StepFinished& step);
   void stepFailed(const beam::StepFailed& failure);
   void warned(const QString& text);
+  void waiting(const beam::JobWaiting& waiting);
   void previewChanged(const std::shared_ptr<const beam::GaussianCloud>& cloud);
   void finished(const beam::JobFinished& outcome);
 

@@ -44,6 +44,10 @@ void ConsoleReporter::show(const StepFailed& e) {
   e.ref.lead ? console_.warning(text) : console_.error(text);
 }
 
+void ConsoleReporter::show(const JobWaiting& e) {
+  console_.info(fmt::format("waits for {}, which {} computes", nameOf(e.ref), e.holder));
+}
+
 void ConsoleReporter::show(const JobFinished& e) {
   console_.endProgress();
   for (const std::string& note : e.notes) console_.print(note);

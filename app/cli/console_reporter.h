@@ -20,6 +20,7 @@ class ConsoleReporter {
   void show(const StepFinished& event);
   void show(const StepFailed& event);
   void show(const JobWarning&) {}  // the console hears warnings itself, also those outside of runs
+  void show(const JobWaiting& event);
   void show(const JobFinished& event);
 
   Console& console_;

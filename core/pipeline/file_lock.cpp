@@ -24,10 +24,14 @@ struct flock wholeFile(short type) {
   return lock;
 }
 
-void writeHolder(int descriptor) {
+std::string ownHost() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
-  const std::string text = fmt::format("host {}, process {}\n", host.data(), ::getpid());
+  return host.data();
+}
+
+void writeHolder(int descriptor) {
+  const std::string text = fmt::format("host {}, process {}\n", ownHost(), ::getpid());
   // Only for messages; a lock without a note is still a lock.
   if (::ftruncate(descriptor, 0) == 0 && ::pwrite(descriptor, text.data(), text.size(), 0) < 0) errno = 0;
 }
@@ -80,6 +84,14 @@ std::string FileLock::holderOf(const std::filesystem::path& path) {
   } catch (const Error&) {
     return "unknown";
   }
+}
+
+std::string FileLock::shortHolderOf(const std::filesystem::path& path) {
+  const std::string whole = holderOf(path);
+  const std::size_t comma = whole.rfind(", process ");
+  if (!whole.starts_with("host ") || comma == std::string::npos) return {};
+  const std::string host = whole.substr(5, comma - 5), process = whole.substr(comma + 2);
+  return host == ownHost() ? process : process + " on host " + host;
 }
 
 FileLock::FileLock(FileLock&& other) noexcept

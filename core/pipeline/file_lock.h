@@ -20,6 +20,8 @@ class FileLock {
   static bool isHeld(const std::filesystem::path& path);
   // "host h, process 123", as the holder wrote; for messages.
   static std::string holderOf(const std::filesystem::path& path);
+  // "process 123", of another machine "process 123 on host h"; empty when nobody wrote so.
+  static std::string shortHolderOf(const std::filesystem::path& path);
 
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&&) = delete;

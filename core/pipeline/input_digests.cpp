@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <locale>
 #include <span>
+#include <sstream>
 
 #include "core/base/error.h"
 #include "core/pipeline/file_digest.h"
@@ -52,6 +55,36 @@ std::string calibrationText(const CaptureSet& capture) {
                       digestOfValues(capture.seed_points.position_m).hex(),
                       digestOfValues(capture.seed_points.color).hex());
   return text;
+}
+
+std::vector<View> viewsOfCalibration(const std::string& text) {
+  std::vector<View> views;
+  std::istringstream lines(text);
+  lines.imbue(std::locale::classic());
+  std::string word;
+  // Names may hold spaces and line breaks, so they go by their length.
+  while (lines >> word && word == "view") {
+    View v;
+    std::size_t length = 0;
+    std::string split;
+    char colon = 0, by = 0;
+    lines >> length >> colon;
+    v.name.resize(std::min<std::size_t>(length, text.size()));
+    lines.read(v.name.data(), static_cast<std::streamsize>(v.name.size()));
+    Camera& c = v.camera;
+    dquat& q = c.camera_from_world.rotation;
+    dvec3& t = c.camera_from_world.translation_m;
+    lines >> split >> c.width >> by >> c.height >> word >> c.intrinsics.fx >> c.intrinsics.fy >>
+        c.intrinsics.cx >> c.intrinsics.cy >> word >> q.w >> q.x >> q.y >> q.z >> word >> t.x >> t.y >> t.z;
+    if (!lines || colon != ':' || by != 'x')
+      throw Error(Error::Kind::Data, fmt::format("the cameras of the import cannot be understood: camera {} "
+                                                 "is not whole",
+                                                 views.size() + 1));
+    v.split = split == "train" ? Split::Train : Split::Test;
+    validate(c, v.name);
+    views.push_back(std::move(v));
+  }
+  return views;
 }
 
 Digest InputDigests::calibration(const CaptureSet& capture) const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "core/base/hash.h"
 #include "core/scene/capture.h"
@@ -16,6 +17,9 @@ namespace beam {
 
 // Cameras, split and seed points as text: one line a view, numbers in shortest round-trip form.
 std::string calibrationText(const CaptureSet& capture);
+inline constexpr const char* kCamerasFile = "cameras.txt";  // of the capture's import: that text
+// Its cameras back. Throws Error{Data} for a line that it does not understand.
+std::vector<View> viewsOfCalibration(const std::string& text);
 
 // Safe to use from several threads.
 class InputDigests {

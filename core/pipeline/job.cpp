@@ -28,9 +28,14 @@ bool spoilsOneFrameOnly(Error::Kind kind) { return kind == Error::Kind::Data || 
 
 }  // namespace
 
-Job::Job(Project& project, ComputeDevice& device, std::stop_token stop, Tell tell,
+Job::Job(Project& project, ComputeDevice& device, std::stop_token stop, const StopWishes& wishes, Tell tell,
          Slot<GaussianCloud>& preview)
-    : project_(project), device_(device), stop_(std::move(stop)), tell_(std::move(tell)), preview_(preview) {
+    : project_(project),
+      device_(device),
+      stop_(std::move(stop)),
+      wishes_(wishes),
+      tell_(std::move(tell)),
+      preview_(preview) {
   sink_ = addLogSink([this](const LogRecord& record) {
     if (record.level != LogLevel::Warning) return;
     {
@@ -54,6 +59,10 @@ JobFinished Job::run(const RunRequest& request) {
     finished_.outcome = finished_.failed.empty() ? JobOutcome::Done : JobOutcome::DoneWithFailures;
   } catch (const Cancelled&) {
     finished_.outcome = JobOutcome::Cancelled;
+  } catch (const AtRest&) {
+    finished_.outcome = JobOutcome::Cancelled;
+    finished_.at_rest = true;
+    finished_.notes.push_back(restNote());
   } catch (const Error& e) {
     fail(e.kind(), e.what());
   } catch (const std::filesystem::filesystem_error& e) {
@@ -88,6 +97,7 @@ void Job::runAll(const RunRequest& request) {
 
 void Job::runProjectSteps(const RunPlan& plan) {
   for (const std::string& step : plan.project_steps) {
+    restAfter(wishes_.after_frame && last_);  // there is no frame yet: it is as good as one
     while (runStep(step, std::nullopt) == Ended::Busy) waitALittle();
   }
 }
@@ -103,6 +113,7 @@ void Job::runFrames(const RunPlan& plan) {
     const Turn turn = todo.front();
     todo.pop_front();
     next_ = todo.empty() ? std::nullopt : std::optional(todo.front());
+    restAfter(wishes_.after_frame);
     if (runFrame(plan, turn) != Ended::Busy) {
       pending_.erase(turn);
       busy_in_a_row = 0;
@@ -146,6 +157,7 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
 Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
   if (stop_.stop_requested()) throw Cancelled();
   if (acknowledged_.contains({step, turn})) return Ended::Reused;
+  restAfter(wishes_.after_step);
   const StepInfo& info = project_.setup().stages.step(step);
   turn_ = turn;
   now_ = refTo(step, turn);
@@ -172,7 +184,10 @@ Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
                     project_.folder().string(), step));
   }
   const std::optional<FileLock> lease = project_.store().tryLease(key);
-  if (!lease) return Ended::Busy;
+  if (!lease) {
+    if (!met_) met_ = JobWaiting{now_, project_.store().leaseHolder(key)};
+    return Ended::Busy;
+  }
   if (project_.store().verified(key)) return reuse();  // published between the look and the lease
   computeWithin(now_, ingredients, key);
   return Ended::Computed;
@@ -262,6 +277,7 @@ void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const D
   ResultRecord record;
   record.ingredients = ingredients;
   record.frame = ref.frame_name;
+  record.lead = ref.lead;
   project_.store().publish(key, std::move(record), [&](const std::filesystem::path& folder, ResultRecord& r) {
     build(ref, folder, r);
     checkInputs(ref, ingredients);
@@ -272,6 +288,9 @@ void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const D
   logInfo("{}{} done in {:.1f} s", ref.step, ref.frame ? ", frame " + ref.frame_name : std::string(),
           seconds);
   weight_done_ += weight_now_;
+  last_ = ref;
+  met_.reset();
+  waits_told_.reset();
   acknowledge(ref, key, false, seconds);
 }
 
@@ -363,9 +382,29 @@ void Job::reportProgress(const StepRef& ref, const ProgressReport& report) {
   tell_(std::move(event));
 }
 
-void Job::waitALittle() const {
+void Job::waitALittle() {
   if (stop_.stop_requested()) throw Cancelled();
+  restAfter(wishes_.any());
+  const auto same = [](const JobWaiting& a, const JobWaiting& b) {
+    return a.ref.step == b.ref.step && a.ref.frame == b.ref.frame && a.holder == b.holder;
+  };
+  if (met_ && !(waits_told_ && same(*met_, *waits_told_))) {
+    tell_(*met_);
+    waits_told_ = met_;
+  }
+  met_.reset();
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+void Job::restAfter(bool fulfilled) const {
+  if (fulfilled) throw AtRest();
+}
+
+std::string Job::restNote() const {
+  if (!last_) return "stopped before the first step, as asked";
+  const std::string& title = project_.setup().stages.step(last_->step).title;
+  return fmt::format("stopped after \"{}\"{}, as asked; the next run goes on from there", title,
+                     last_->frame ? " of frame " + last_->frame_name : std::string());
 }
 
 StepRef Job::refTo(const std::string& step, std::optional<Turn> turn) const {

@@ -20,6 +20,7 @@
 #include "core/pipeline/project.h"
 #include "core/pipeline/run_plan.h"
 #include "core/pipeline/session_log.h"
+#include "core/pipeline/stop_wishes.h"
 
 namespace beam {
 
@@ -27,7 +28,8 @@ class Job {
  public:
   using Tell = std::function<void(JobEvent)>;
   // `project` gets the takes that the run is about.
-  Job(Project& project, ComputeDevice& device, std::stop_token stop, Tell tell, Slot<GaussianCloud>& preview);
+  Job(Project& project, ComputeDevice& device, std::stop_token stop, const StopWishes& wishes, Tell tell,
+      Slot<GaussianCloud>& preview);
   ~Job();
 
   // Never throws: what went wrong is in the answer.
@@ -41,6 +43,7 @@ class Job {
     Severed  // the frame before will not have what it builds on
   };
   using Clock = std::chrono::steady_clock;
+  struct AtRest {};  // thrown between steps when a wish to stop after something is fulfilled
 
   void runAll(const RunRequest& request);
   void runProjectSteps(const RunPlan& plan);
@@ -66,7 +69,9 @@ class Job {
   void failFrame(const StepRef& ref, const std::string& message);
   void acknowledge(const StepRef& ref, const Digest& key, bool reused, double seconds);
   void reportProgress(const StepRef& ref, const ProgressReport& report);
-  void waitALittle() const;
+  void waitALittle();
+  void restAfter(bool fulfilled) const;
+  std::string restNote() const;
 
   StepRef refTo(const std::string& step, std::optional<Turn> turn) const;
   double secondsSince(Clock::time_point start) const;
@@ -74,6 +79,7 @@ class Job {
   Project& project_;
   ComputeDevice& device_;
   std::stop_token stop_;
+  const StopWishes& wishes_;
   Tell tell_;
   Slot<GaussianCloud>& preview_;
   JobFinished finished_;
@@ -87,6 +93,9 @@ class Job {
   std::optional<FrameIndex> pictures_of_;
   std::optional<Turn> turn_, next_;  // the one at work, none: a step of the project; the one after it
   StepRef now_;                      // the step at work, for messages
+  std::optional<StepRef> last_;      // that this run computed
+  // What another process computes: met since the last wait, and told.
+  std::optional<JobWaiting> met_, waits_told_;
   std::unique_ptr<SessionLog> log_;
   int sink_ = 0;
   std::mutex warnings_mutex_;

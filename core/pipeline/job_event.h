@@ -55,6 +55,13 @@ struct JobWarning {
   std::string text;
 };
 
+// The run rests until another process has published this result; told when that begins and when it becomes
+// another result or process.
+struct JobWaiting {
+  StepRef ref;
+  std::string holder;  // "process 1234"
+};
+
 enum class JobOutcome {
   Done,
   DoneWithFailures,  // some frames failed; they are listed
@@ -70,8 +77,10 @@ struct JobFinished {
   std::vector<std::string> notes;       // what was left out and what it would need
   int computed = 0, reused = 0;         // steps
   double seconds = 0;
+  bool at_rest = false;  // cancelled between two steps as asked (StopAfter); the last note says after which
 };
 
-using JobEvent = std::variant<StageStarted, StepProgress, StepFinished, StepFailed, JobWarning, JobFinished>;
+using JobEvent =
+    std::variant<StageStarted, StepProgress, StepFinished, StepFailed, JobWarning, JobWaiting, JobFinished>;
 
 }  // namespace beam

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/io/file.h"
+#include "core/pipeline/lost_capture.h"
 #include "core/pipeline/presets.h"
 
 namespace beam {
@@ -238,11 +239,49 @@ void Project::save() {
 
 fs::path Project::captureFolder() const {
   if (std::optional<fs::path> found = resolve(document_.capture, folder_)) return *found;
-  throw Error(
-      Error::Kind::Data,
-      fmt::format("the capture of \"{}\" is gone: expected it at \"{}\"; put it back, or name its new place "
-                  "with: beam process FOLDER --out \"{}\"",
-                  folder_.string(), document_.capture.absolute, folder_.string()));
+  throw Error(Error::Kind::Data,
+              fmt::format("{}; put it back, or name its new place with: beam process FOLDER --out \"{}\"",
+                          lostCaptureText(), folder_.string()));
+}
+
+std::string Project::lostCaptureText() const {
+  return fmt::format("the capture of \"{}\" is gone: expected it at \"{}\"", folder_.string(),
+                     document_.capture.absolute);
+}
+
+bool Project::captureIsThere() const {
+  const std::optional<fs::path> found = resolve(document_.capture, folder_);
+  std::error_code failed;
+  return found && fs::is_directory(*found, failed);
+}
+
+void Project::lookWithoutCapture() {
+  without_capture_ = true;
+  forgetCapture();
+}
+
+void Project::requireCapture() const {
+  if (!without_capture_) return;
+  captureFolder();  // says so when it is still gone
+  throw Error(Error::Kind::Data, fmt::format("\"{}\" was opened without its capture, which is there again: "
+                                             "open the project once more",
+                                             folder_.string()));
+}
+
+void Project::relocateCapture(const fs::path& folder, bool other_too) {
+  const std::vector<DescriptionFile> found = describeCapture(folder);
+  if (found.empty()) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" is no capture: expected dataset.json, transforms.json or sparse/ in it",
+                            folder.string()));
+  }
+  if (const std::string other = differenceOf(document_.capture_files, found); !other_too && !other.empty()) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" is another capture than that of \"{}\", which was at \"{}\": {}",
+                            folder.string(), folder_.string(), document_.capture.absolute, other));
+  }
+  without_capture_ = false;
+  setCapture(folder);
 }
 
 bool Project::isCapture(const fs::path& folder) const {
@@ -253,7 +292,9 @@ bool Project::isCapture(const fs::path& folder) const {
 }
 
 const ImportedCapture& Project::imported() const {
-  if (!imported_) {
+  if (!imported_ && without_capture_) {
+    imported_ = std::make_shared<const ImportedCapture>(captureFromResults(*this));
+  } else if (!imported_) {
     ImportOptions options;
     options.up = document_.up;
     options.hold_out = document_.hold_out;

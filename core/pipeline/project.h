@@ -81,6 +81,17 @@ class Project {
   std::filesystem::path captureFolder() const;
   // Whether `folder` holds the capture of this project: the same folder, or one described by the same bytes.
   bool isCapture(const std::filesystem::path& folder) const;
+  // Whether the folder of the capture is where the project expects it; cheap.
+  bool captureIsThere() const;
+  // For looking at results whose capture is gone: from now on capture() is what the results tell of it
+  // (captureFromResults), every stage is blocked, there are no keys, and nothing can be run.
+  void lookWithoutCapture();
+  bool withoutCapture() const { return without_capture_; }
+  // Throws Error{Data} in a project that is looked at without its capture.
+  void requireCapture() const;
+  // The capture is in `folder` now; ends looking without it. One that is described by other bytes, which may
+  // not fit the results, is refused unless `other_too`: Error{Data} that tells what differs.
+  void relocateCapture(const std::filesystem::path& folder, bool other_too = false);
   // The panorama in force: the project's own, else the capture's.
   std::optional<std::filesystem::path> environmentFile() const;
 
@@ -131,6 +142,7 @@ class Project {
   Project(std::filesystem::path folder, ProjectDocument document, std::shared_ptr<const PipelineSetup> setup);
   void forgetCapture();
   const std::map<std::string, FieldValue>& preset() const;
+  std::string lostCaptureText() const;
   bool savesTakes() const;
   Digest keyAt(const std::string& step, const Take& take, FrameIndex frame) const;
   void keepKeysBefore(const std::string& step, const Take& take, FrameIndex frame) const;
@@ -146,6 +158,7 @@ class Project {
   mutable std::shared_ptr<const ImportedCapture> imported_;
   mutable std::shared_ptr<const InputDigests> inputs_;
   mutable KeyMemo memo_;
+  bool without_capture_ = false;
 };
 
 }  // namespace beam

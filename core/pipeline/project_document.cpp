@@ -146,6 +146,31 @@ std::vector<DescriptionFile> describeCapture(const fs::path& capture) {
   return found;
 }
 
+std::string differenceOf(const std::vector<DescriptionFile>& expected,
+                         const std::vector<DescriptionFile>& found) {
+  std::vector<std::string> differences;
+  const auto named = [](const std::vector<DescriptionFile>& files, const std::string& name) {
+    return std::find_if(files.begin(), files.end(), [&](const auto& f) { return f.name == name; });
+  };
+  for (const DescriptionFile& file : expected) {
+    const auto here = named(found, file.name);
+    if (here == found.end()) {
+      differences.push_back(file.name + " is missing");
+    } else if (here->bytes != file.bytes) {
+      differences.push_back(
+          fmt::format("{}: expected {} bytes, found {}", file.name, file.bytes, here->bytes));
+    } else if (here->digest != file.digest) {
+      differences.push_back(
+          fmt::format("{}: expected digest {}, found {}", file.name, file.digest.hex(), here->digest.hex()));
+    }
+  }
+  for (const DescriptionFile& file : found) {
+    if (!expected.empty() && named(expected, file.name) == expected.end())
+      differences.push_back(file.name + " was not there");
+  }
+  return fmt::format("{}", fmt::join(differences, "; "));
+}
+
 std::string toJson(const ProjectDocument& document) {
   Json j;
   j["format"] = {{"major", kMajor}, {"minor", kMinor}};

@@ -35,6 +35,9 @@ struct DescriptionFile {  // dataset.json and the like, to know the capture agai
   bool operator==(const DescriptionFile&) const = default;
 };
 std::vector<DescriptionFile> describeCapture(const std::filesystem::path& capture);
+// "dataset.json: expected 812 bytes, found 900"; empty: the same, or `expected` says nothing.
+std::string differenceOf(const std::vector<DescriptionFile>& expected,
+                         const std::vector<DescriptionFile>& found);
 
 struct ProjectDocument {
   std::string id;  // 32 hexadecimal digits, made at creation; copies and moves keep it

@@ -130,6 +130,7 @@ Digest Project::keyAt(const std::string& step, const Take& take, FrameIndex fram
 }
 
 KeyIngredients Project::ingredients(std::string_view step_id, const Take& take, FrameIndex frame) const {
+  requireCapture();  // a key made from what results tell of it would promise something else
   const std::string step(step_id);
   const StageRegistry& stages = setup_->stages;
   const StepInfo& info = stages.step(step);
@@ -200,6 +201,7 @@ bool Project::lacksAny(const std::vector<std::string>& steps, const Take& take, 
 
 std::string Project::blockedReason(std::string_view stage) const {
   const StageInfo& info = setup_->stages.info(stage);
+  if (without_capture_) return lostCaptureText();
   std::set<std::string> all;
   for (const StepInfo& step : info.steps) setup_->stages.addWithReads(info.id + "." + step.id, all);
   const bool needs_environment = std::any_of(all.begin(), all.end(), [&](const std::string& id) {
@@ -232,7 +234,7 @@ StepState Project::stageState(std::string_view stage, FrameIndex frame) const {
 }
 
 std::string Project::failureOf(std::string_view step, FrameIndex frame) const {
-  if (!applies(step, frame)) return {};
+  if (without_capture_ || !applies(step, frame)) return {};
   const std::optional<FailureNote> note = store_->failure(key(step, frame));
   return note ? note->message : std::string();
 }

@@ -46,6 +46,7 @@ std::string toJson(const ResultRecord& r) {
   j["upstream"] = digests(r.ingredients.upstream);
   if (r.ingredients.later) j["later"] = true;
   j["frame"] = r.frame;
+  if (r.lead) j["lead"] = true;
   j["files"] = Json::object();
   for (const auto& [name, entry] : r.files) {
     j["files"][name] = {{"bytes", entry.bytes}, {"xxh3_128", entry.digest.hex()}};
@@ -71,6 +72,7 @@ ResultRecord parseResultRecord(std::string_view json) {
     r.ingredients.upstream = parseDigests(j.at("upstream"));
     r.ingredients.later = j.value("later", false);
     r.frame = j.at("frame").get<std::string>();
+    r.lead = j.value("lead", false);
     for (const auto& [name, entry] : j.at("files").items()) {
       r.files[name] = {entry.at("bytes").get<std::uint64_t>(),
                        parseDigest(entry.at("xxh3_128").get<std::string>())};

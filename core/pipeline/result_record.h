@@ -23,6 +23,7 @@ struct ResultRecord {
   KeyIngredients ingredients;
   std::map<std::string, FileEntry> files;  // by path inside the result's folder
   std::string frame;                       // the capture's name; empty for results of the whole project
+  bool lead = false;                       // made for a take that does not own the frame (Take::lead)
   std::string program_version;
   std::string device;  // and the instruction set; does not enter the key
   int threads = 0;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -70,6 +71,22 @@ std::string stampOf(const fs::path& folder, const ResultRecord& record) {
 }  // namespace
 
 fs::path ResultStore::folderOf(const Digest& key) const { return project_ / "results" / key.hex(); }
+
+std::vector<Digest> ResultStore::keys() const {
+  std::vector<Digest> found;
+  std::error_code failed;
+  for (fs::directory_iterator i(project_ / "results", failed), end; !failed && i != end;
+       i.increment(failed)) {
+    const std::string name = i->path().filename().string();
+    try {
+      found.push_back(parseDigest(name));
+    } catch (const Error&) {
+      continue;  // half-built, or not ours
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
 
 std::optional<ResultRecord> ResultStore::record(const Digest& key) const {
   const fs::path file = folderOf(key) / kRecordFile;
@@ -157,6 +174,11 @@ std::optional<FileLock> ResultStore::tryLease(const Digest& key) const {
 
 bool ResultStore::isLeased(const Digest& key) const {
   return FileLock::isHeld(project_ / "leases" / key.hex());
+}
+
+std::string ResultStore::leaseHolder(const Digest& key) const {
+  const std::string holder = FileLock::shortHolderOf(project_ / "leases" / key.hex());
+  return holder.empty() ? "another process" : holder;
 }
 
 void ResultStore::publish(const Digest& key, ResultRecord record, const Build& build) const {

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/hash.h"
 #include "core/pipeline/file_lock.h"
@@ -22,6 +23,8 @@ class ResultStore {
 
   std::filesystem::path folderOf(const Digest& key) const;
 
+  // Of all that is in results/, finished or damaged, ascending.
+  std::vector<Digest> keys() const;
   // Whether result.json is there and every file has its size; reads no file's bytes.
   bool has(const Digest& key) const;
   std::optional<ResultRecord> record(const Digest& key) const;
@@ -32,6 +35,8 @@ class ResultStore {
   // Who computes `key` holds its lease. Empty when somebody else does.
   std::optional<FileLock> tryLease(const Digest& key) const;
   bool isLeased(const Digest& key) const;
+  // "process 123", of another machine "process 123 on host h"; "another process" when that is not known.
+  std::string leaseHolder(const Digest& key) const;
 
   // Lets `build` fill a folder and makes it the result: files synced and hashed, `record` completed with them
   // and written last, folder renamed, results/ synced. After it returns, the result survives anything. The

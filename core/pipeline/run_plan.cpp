@@ -82,6 +82,7 @@ void arrangeTakes(Project& project, const RunRequest& request) {
 }
 
 RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
+  project.requireCapture();
   const StageRegistry& stages = project.setup().stages;
   if (request.every < 1)
     throw Error(Error::Kind::Usage,

@@ -16,13 +16,14 @@ void Runner::start(Project project, RunRequest request, std::shared_ptr<ComputeD
   if (thread_.joinable()) thread_.join();
   running_ = true;
   preview_.publish(nullptr);
+  wishes_.clear();
   thread_ = std::jthread([this, project = std::move(project), request = std::move(request),
                           device = std::move(device)](std::stop_token stop) mutable {
     JobFinished finished;
     {
       Job job(
-          project, *device, std::move(stop), [this](JobEvent event) { events_.push(std::move(event)); },
-          preview_);
+          project, *device, std::move(stop), wishes_,
+          [this](JobEvent event) { events_.push(std::move(event)); }, preview_);
       finished = job.run(request);
     }
     running_ = false;
@@ -31,5 +32,7 @@ void Runner::start(Project project, RunRequest request, std::shared_ptr<ComputeD
 }
 
 void Runner::requestStop() { thread_.request_stop(); }
+
+void Runner::requestStopAfter(StopAfter what) { wishes_.add(what); }
 
 }  // namespace beam

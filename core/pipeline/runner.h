@@ -16,6 +16,7 @@
 #include "core/pipeline/job_event.h"
 #include "core/pipeline/project.h"
 #include "core/pipeline/run_plan.h"
+#include "core/pipeline/stop_wishes.h"
 #include "core/scene/gaussian_cloud.h"
 
 namespace beam {
@@ -33,6 +34,9 @@ class Runner {
   // run.
   void start(Project project, RunRequest request, std::shared_ptr<ComputeDevice> device);
   void requestStop();
+  // Ends the run once the step, or every step of the frame, at work is published; a run that waits ends at
+  // once. The outcome is Cancelled with JobFinished::at_rest. For this run alone; requestStop stays possible.
+  void requestStopAfter(StopAfter what);
   // From start until JobFinished was pushed.
   bool running() const { return running_; }
 
@@ -45,6 +49,7 @@ class Runner {
   EventQueue<JobEvent> events_;
   Slot<GaussianCloud> preview_;
   std::atomic<bool> running_{false};
+  StopWishes wishes_;
   std::jthread thread_;
 };
 

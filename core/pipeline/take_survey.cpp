@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -36,17 +37,39 @@ bool followsFrames(const StageInfo& stage) {
                      [](const StepInfo& step) { return !step.later.previous.empty(); });
 }
 
-// Frames without results between two that have some, in the stages whose frames build on each other.
-void markInterpolated(const Project& project, TakeSurvey& survey) {
+bool isShown(const std::string& step) {
+  return step == kMaterialsStep || step == kRefineStep || step == kFitStep || step == kMeshStep;
+}
+
+Digest surfaceOf(const KeyIngredients& made, const Digest& key) {
+  if (made.step == kRefineStep) return key;
+  const auto surface = made.upstream.find(kRefineStep);
+  return surface == made.upstream.end() ? Digest{} : surface->second;
+}
+
+std::int64_t publishedAt(const fs::path& result) {
+  std::error_code failed;
+  const fs::file_time_type time = fs::last_write_time(result / "result.json", failed);
+  return failed ? 0 : std::chrono::nanoseconds(time.time_since_epoch()).count();
+}
+
+std::string textOf(const Leftovers& leftovers) {
+  std::string text;
+  for (const Leftover& l : leftovers) text += " left " + l.key.hex();
+  return text;
+}
+
+// Frames without results between two that have some, in the stages whose frames build on each other. `own`:
+// stamps of the results of the settings in force.
+void markInterpolated(const Project& project, const std::vector<Digest>& own, TakeSurvey& survey) {
   const std::vector<Take> takes = project.takes();
-  const std::vector<Digest> own = survey.stamps;
   for (std::size_t f = 0; f < own.size(); ++f) {
     const auto between = betweenOf(takes, FrameIndex{static_cast<std::int32_t>(f)});
     if (!between) continue;
     const auto a = static_cast<std::size_t>(between->before.value),
                b = static_cast<std::size_t>(between->after.value);
     if (own[a] == Digest{} || own[b] == Digest{}) continue;
-    survey.stamps[f] = digestOf("between " + own[f].hex() + own[a].hex() + own[b].hex());
+    survey.stamps[f] = digestOf("between " + survey.stamps[f].hex() + own[a].hex() + own[b].hex());
     for (std::size_t i = 0; i < survey.lanes.size(); ++i) {
       std::vector<CellState>& cells = survey.lanes[i].cells;
       // Seen as a take of its own, a frame between is in no need of joints.
@@ -72,7 +95,16 @@ struct TakeSurveyor::Pass {
   std::set<Digest> results, failures, leases;
   std::set<std::pair<std::string, std::string>> made;  // step and frame that have a result of any key
   std::map<std::string, std::vector<double>> curves;
+  std::vector<std::string> stamps;     // by frame: keys of what is done
+  std::set<std::size_t> in_materials;  // frames whose materials are
 
+  void draw(const std::string& step, const std::map<std::string, double>& scores, std::size_t frame) {
+    for (const auto& [name, value] : scores) {
+      auto& curve = curves[fmt::format("{}.{}", step, name)];
+      curve.resize(stamps.size(), std::numeric_limits<double>::quiet_NaN());
+      curve[frame] = value;
+    }
+  }
   CellState stateOf(const Digest& key, const std::map<Digest, Record>& records) const {
     if (results.contains(key)) {
       const auto record = records.find(key);
@@ -106,7 +138,13 @@ void TakeSurveyor::readRecords(const Project& project, Pass& pass) {
     if (known == records_.end() || !known->second.whole) {
       const std::optional<ResultRecord> found = project.store().record(key);
       if (!found) continue;
-      Record record{found->ingredients.step, found->frame, found->scores, project.store().has(key)};
+      Record record{found->ingredients.step,
+                    found->frame,
+                    found->scores,
+                    project.store().has(key),
+                    found->lead,
+                    surfaceOf(found->ingredients, key),
+                    publishedAt(project.store().folderOf(key))};
       record.scores["seconds"] = found->seconds;
       known = records_.insert_or_assign(key, std::move(record)).first;
     }
@@ -129,12 +167,99 @@ void TakeSurveyor::keepLeadKeys(const Project& project) {
   }
 }
 
+// What was made as a lead comes last: the frame may have taken it over since, which no record tells.
+void TakeSurveyor::listLeftovers(const Pass& pass, TakeSurvey& survey) const {
+  using Age = std::pair<bool, std::int64_t>;
+  std::map<std::string, std::vector<std::pair<Age, Leftover>>> found;
+  for (const Digest& key : pass.results) {
+    const auto known = records_.find(key);
+    if (known == records_.end()) continue;
+    const Record& r = known->second;
+    if (r.whole && isShown(r.step) && !leads_.contains(key))
+      found[r.frame].emplace_back(Age(!r.lead, r.published_ns), Leftover{r.step, key, r.surface});
+  }
+  survey.leftovers.resize(survey.frames.size());
+  for (std::size_t f = 0; f < survey.frames.size(); ++f) {
+    auto& dated = found[survey.frames[f]];
+    std::stable_sort(dated.begin(), dated.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (auto& [age, leftover] : dated) survey.leftovers[f].push_back(std::move(leftover));
+  }
+}
+
+void TakeSurveyor::surveyStep(const std::string& id, const StepInfo& step, Pass& pass, TakeSurvey& survey) {
+  const Keys& keys = keysOf(pass.project, id, step.per_frame);
+  SurveyLane& lane = survey.lanes.back();
+  for (std::size_t f = 0; f < survey.frames.size(); ++f) {
+    if (!keys[step.per_frame ? f : 0]) continue;
+    const Digest& key = *keys[step.per_frame ? f : 0];
+    const CellState state = pass.stateOf(key, records_);
+    const bool stale = state == CellState::Empty &&
+                       pass.made.contains({id, step.per_frame ? survey.frames[f] : std::string()});
+    CellState& cell = lane.cells[f];
+    const bool so_far_done = cell == CellState::Done || cell == CellState::NotNeeded;
+    if (so_far_done) cell = stale ? CellState::Stale : state;
+    if (cell == CellState::Empty && stale) cell = CellState::Stale;
+    if (state == CellState::Failed && lane.notes[f].empty()) {
+      const std::optional<FailureNote> note = pass.project.store().failure(key);
+      lane.notes[f] = note ? note->message : std::string();
+    }
+    if (state != CellState::Done || !step.per_frame) continue;
+    pass.stamps[f] += key.hex();
+    if (id == kMaterialsStep) pass.in_materials.insert(f);
+    pass.draw(id, records_.at(key).scores, f);
+  }
+}
+
+// What can be said of results without the keys of the settings in force.
+void TakeSurveyor::surveyRecords(Pass& pass, TakeSurvey& survey) const {
+  std::map<std::pair<std::string, std::string>, const Record*> newest;
+  for (const Digest& key : pass.results) {
+    const auto known = records_.find(key);
+    if (known == records_.end() || !known->second.whole) continue;
+    const Record& r = known->second;
+    const Record*& best = newest[{r.step, r.frame}];
+    if (best == nullptr || std::pair(!best->lead, best->published_ns) < std::pair(!r.lead, r.published_ns))
+      best = &r;
+  }
+  for (const StageInfo& info : pass.project.setup().stages.infos()) {
+    SurveyLane lane{info.id, info.title, pass.project.blockedReason(info.id), {}, {}};
+    lane.cells.assign(survey.frames.size(), CellState::Empty);
+    lane.notes.resize(survey.frames.size());
+    for (const StepInfo& step : info.steps) {
+      const std::string id = info.id + "." + step.id;
+      for (std::size_t f = 0; f < survey.frames.size(); ++f) {
+        const auto made = newest.find({id, step.per_frame ? survey.frames[f] : std::string()});
+        if (made == newest.end()) continue;
+        lane.cells[f] = CellState::Stale;
+        if (step.per_frame) pass.draw(id, made->second->scores, f);
+      }
+    }
+    survey.lanes.push_back(std::move(lane));
+  }
+}
+
+void TakeSurveyor::surveyStages(Pass& pass, TakeSurvey& survey) {
+  for (const StageInfo& info : pass.project.setup().stages.infos()) {
+    survey.lanes.push_back({info.id, info.title, pass.project.blockedReason(info.id), {}, {}});
+    SurveyLane& lane = survey.lanes.back();
+    const bool blocked = !lane.blocked_reason.empty();
+    lane.cells.assign(survey.frames.size(), blocked ? CellState::Blocked : CellState::NotNeeded);
+    lane.notes.resize(survey.frames.size());
+    for (const StepInfo& step : info.steps) {
+      if (!blocked) surveyStep(info.id + "." + step.id, step, pass, survey);
+    }
+  }
+}
+
 TakeSurvey TakeSurveyor::survey(const Project& project) {
-  const std::string now = project.folder().string() + "\n" + toJson(project.document());
+  const std::string now = fmt::format("{}\n{}\n{}", project.folder().string(), project.withoutCapture(),
+                                      toJson(project.document()));
   if (now != known_for_) {
     keys_.clear();
+    leads_.clear();
     project.forgetKeys();
-    keepLeadKeys(project);
+    if (!project.withoutCapture()) keepLeadKeys(project);
     known_for_ = now;
   }
   const fs::path results = project.store().folderOf({}).parent_path();
@@ -143,47 +268,23 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
             keysIn(results.parent_path() / "failures"),
             keysIn(results.parent_path() / "leases"),
             {},
+            {},
+            {},
             {}};
   readRecords(project, pass);
   TakeSurvey survey;
   survey.frames = project.capture().frames;
-  const std::size_t frames = survey.frames.size();
-  std::vector<std::string> stamps(frames);
-  for (const StageInfo& info : project.setup().stages.infos()) {
-    SurveyLane lane{info.id, info.title, project.blockedReason(info.id), {}, {}};
-    lane.cells.assign(frames, lane.blocked_reason.empty() ? CellState::NotNeeded : CellState::Blocked);
-    lane.notes.resize(frames);
-    for (const StepInfo& step : info.steps) {
-      if (!lane.blocked_reason.empty()) break;
-      const std::string id = info.id + "." + step.id;
-      const Keys& keys = keysOf(project, id, step.per_frame);
-      for (std::size_t f = 0; f < frames; ++f) {
-        if (!keys[step.per_frame ? f : 0]) continue;
-        const Digest& key = *keys[step.per_frame ? f : 0];
-        const CellState state = pass.stateOf(key, records_);
-        const bool stale = state == CellState::Empty &&
-                           pass.made.contains({id, step.per_frame ? survey.frames[f] : std::string()});
-        CellState& cell = lane.cells[f];
-        const bool so_far_done = cell == CellState::Done || cell == CellState::NotNeeded;
-        if (so_far_done) cell = stale ? CellState::Stale : state;
-        if (cell == CellState::Empty && stale) cell = CellState::Stale;
-        if (state == CellState::Failed && lane.notes[f].empty()) {
-          const std::optional<FailureNote> note = project.store().failure(key);
-          lane.notes[f] = note ? note->message : std::string();
-        }
-        if (state != CellState::Done || !step.per_frame) continue;
-        stamps[f] += key.hex();
-        for (const auto& [name, value] : records_.at(key).scores) {
-          auto& curve = pass.curves[fmt::format("{}.{}", id, name)];
-          curve.resize(frames, std::numeric_limits<double>::quiet_NaN());
-          curve[f] = value;
-        }
-      }
-    }
-    survey.lanes.push_back(std::move(lane));
+  pass.stamps.resize(survey.frames.size());
+  listLeftovers(pass, survey);
+  project.withoutCapture() ? surveyRecords(pass, survey) : surveyStages(pass, survey);
+  std::vector<Digest> own;
+  for (std::size_t f = 0; f < survey.frames.size(); ++f) {
+    const auto stampOf = [](const std::string& text) { return text.empty() ? Digest{} : digestOf(text); };
+    own.push_back(stampOf(pass.stamps[f]));
+    const bool settled = pass.in_materials.contains(f);
+    survey.stamps.push_back(settled ? own[f] : stampOf(pass.stamps[f] + textOf(survey.leftovers[f])));
   }
-  for (const std::string& stamp : stamps) survey.stamps.push_back(stamp.empty() ? Digest{} : digestOf(stamp));
-  markInterpolated(project, survey);
+  markInterpolated(project, own, survey);
   for (auto& [name, values] : pass.curves) survey.curves.push_back({name, std::move(values)});
   return survey;
 }

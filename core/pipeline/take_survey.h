@@ -3,6 +3,7 @@
 // the project's folder. For timelines; a single frame is asked of Project.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/pipeline/frame_result.h"
 #include "core/pipeline/project.h"
 
 namespace beam {
@@ -41,8 +43,11 @@ struct TakeSurvey {
   std::vector<std::string> frames;
   std::vector<SurveyLane> lanes;    // in pipeline order
   std::vector<SurveyCurve> curves;  // of results with the settings in force, by step and name
-  // By frame: changes when a finished result comes or goes, of its own or of those that it lies between;
-  // zero: there is none.
+  // By frame: what it can be shown from, whatever the settings; no leads of takes in force.
+  std::vector<Leftovers> leftovers;
+  // By frame: changes when what is to be shown of it may change, by a result of its own, of those that it
+  // lies between, or by what is left over while it has no materials of the settings in force; zero: there is
+  // nothing.
   std::vector<Digest> stamps;
 
   const SurveyCurve* curve(std::string_view name) const;  // null: there is none
@@ -52,6 +57,7 @@ struct TakeSurvey {
 // thread at a time.
 class TakeSurveyor {
  public:
+  // Of a project without its capture: every cell is Stale or Empty, curves are those of the newest results.
   TakeSurvey survey(const Project& project);
   // Pictures of the capture may have changed on disk: the next pass asks for every key again.
   void forgetKeys() { known_for_.clear(); }
@@ -61,12 +67,19 @@ class TakeSurveyor {
     std::string step, frame;
     std::map<std::string, double> scores;
     bool whole = false;  // every file was there with its size
+    bool lead = false;   // made for a take that does not own the frame
+    Digest surface;      // see Leftover
+    std::int64_t published_ns = 0;
   };
   struct Pass;
   using Keys = std::vector<std::optional<Digest>>;  // none: the step is not for the frame
   const Keys& keysOf(const Project& project, const std::string& step, bool per_frame);
   void readRecords(const Project& project, Pass& pass);
   void keepLeadKeys(const Project& project);
+  void surveyStep(const std::string& id, const StepInfo& step, Pass& pass, TakeSurvey& survey);
+  void surveyStages(Pass& pass, TakeSurvey& survey);
+  void surveyRecords(Pass& pass, TakeSurvey& survey) const;
+  void listLeftovers(const Pass& pass, TakeSurvey& survey) const;
 
   std::string known_for_;             // project and settings that keys_ belong to
   std::map<std::string, Keys> keys_;  // by step; one a frame, or a single one

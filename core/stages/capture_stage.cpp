@@ -64,7 +64,7 @@ class CaptureStage final : public StageOf<CaptureOptions> {
  private:
   // The result holds what was understood; pictures stay where they are.
   static void importCapture(StepContext& c) {
-    writeFileAtomically(c.folder / "cameras.txt", calibrationText(c.capture));
+    writeFileAtomically(c.folder / kCamerasFile, calibrationText(c.capture));
     if (!c.capture.seed_points.position_m.empty()) {
       writePointsPly(c.folder / "seed_points.ply", c.capture.seed_points);
     }

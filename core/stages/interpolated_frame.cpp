@@ -14,9 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFit = "surface.fit";
-constexpr const char* kRefine = "surface.refine";
-constexpr const char* kMaterials = "materials.fit";
 constexpr const char* kJoints = "track.joints";
 
 // The results of one frame that an interpolation reads.
@@ -29,12 +26,12 @@ struct Solved {
 std::optional<Solved> solvedAt(const Project& project, FrameIndex frame, const char* step) {
   const auto skin = project.result(step, frame), joints = project.result(kJoints, frame);
   if (!skin || !joints) return std::nullopt;
-  return Solved{*skin, *joints, project.result(kMaterials, frame), step == kRefine};
+  return Solved{*skin, *joints, project.result(kMaterialsStep, frame), step == kRefineStep};
 }
 
 // Both as far as both are solved.
 std::optional<std::pair<Solved, Solved>> solvedPair(const Project& project, const Between& between) {
-  for (const char* step : {kRefine, kFit}) {
+  for (const char* step : {kRefineStep, kFitStep}) {
     auto a = solvedAt(project, between.before, step), b = solvedAt(project, between.after, step);
     if (!a || !b) continue;
     if (!isCarried(b->skin)) return std::nullopt;
@@ -71,6 +68,26 @@ std::optional<FrameResult> loadShownFrame(const Project& project, FrameIndex fra
   return interpolated(pair->first, pair->second, between->share);
 }
 
+std::optional<FrameResult> loadShownFrame(const Project& project, FrameIndex frame,
+                                          const Leftovers& leftovers) {
+  if (project.withoutCapture()) return loadLeftover(project, leftovers);
+  if (!project.result(kMaterialsStep, frame)) {
+    if (auto older = loadOlderMaterials(project, frame, leftovers)) return older;
+  }
+  if (auto shown = loadShownFrame(project, frame)) return shown;
+  return loadLeftover(project, leftovers);
+}
+
+std::optional<Mesh> loadShownMesh(const Project& project, FrameIndex frame, const Leftovers& leftovers) {
+  if (project.withoutCapture()) return loadLeftoverMesh(project, leftovers);
+  if (auto mesh = loadFrameMesh(project, frame)) return mesh;
+  for (const char* step : {kMaterialsStep, kRefineStep, kFitStep}) {
+    if (project.result(step, frame)) return std::nullopt;
+  }
+  if (solvedAround(project, frame)) return std::nullopt;
+  return loadLeftoverMesh(project, leftovers);
+}
+
 std::optional<Pose> jointsBetween(const Project& project, const Between& between) {
   const auto a = project.result(kJoints, between.before), b = project.result(kJoints, between.after);
   if (!a || !b || readTrackNote(*b).restarted) return std::nullopt;
@@ -79,7 +96,7 @@ std::optional<Pose> jointsBetween(const Project& project, const Between& between
 }
 
 std::optional<Between> solvedAround(const Project& project, FrameIndex frame) {
-  for (const char* step : {kMaterials, kRefine, kFit}) {
+  for (const char* step : {kMaterialsStep, kRefineStep, kFitStep}) {
     if (project.result(step, frame)) return std::nullopt;
   }
   const std::optional<Between> between = betweenOf(project.takes(), frame);
