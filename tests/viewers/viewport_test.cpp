@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
-#include <QDeadlineTimer>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QOpenGLWidget>
 
-#include "tests/support/splat_shapes.h"
+#include "tests/support/three_balls.h"
+#include "tests/support/wait_for.h"
 #include "viewers/image/image_view.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
@@ -16,58 +16,10 @@
 namespace beam {
 namespace {
 
-using testing::addSphere;
-
-template <class Condition>
-bool waitFor(Condition&& condition) {
-  for (QDeadlineTimer deadline(20000); !deadline.hasExpired();) {
-    QApplication::processEvents(QEventLoop::AllEvents, 20);
-    if (condition()) return true;
-  }
-  return false;
-}
-
-// Rectangles of the view, in shares of its size, whose mean colour is read.
-vec3 meanColor(const QImage& image, QRectF share) {
-  dvec3 sum(0);
-  int count = 0;
-  for (int y = static_cast<int>(share.top() * image.height()); y < share.bottom() * image.height(); ++y) {
-    for (int x = static_cast<int>(share.left() * image.width()); x < share.right() * image.width(); ++x) {
-      const QColor c = image.pixelColor(x, y);
-      sum += dvec3(c.red(), c.green(), c.blue());
-      ++count;
-    }
-  }
-  return vec3(sum / static_cast<double>(count));
-}
-
-// A red ball at +Y above a blue one at -Y, a green one to the right (+X).
-std::shared_ptr<const GaussianCloud> threeBalls() {
-  auto cloud = std::make_shared<GaussianCloud>();
-  const auto ball = [&](vec3 center, vec3 color) {
-    const std::size_t first = cloud->size();
-    addSphere(*cloud, center, 0.3f, 400);
-    for (std::size_t i = first; i < cloud->size(); ++i) {
-      for (int c = 0; c < 3; ++c) cloud->color.of(i)[c] = (color[c] - 0.5f) / kShC0;
-    }
-  };
-  ball(vec3(0, 0.6f, 0), vec3(0.9f, 0.1f, 0.1f));
-  ball(vec3(0, -0.6f, 0), vec3(0.1f, 0.1f, 0.9f));
-  ball(vec3(0.6f, 0, 0), vec3(0.1f, 0.8f, 0.1f));
-  return cloud;
-}
-
-std::shared_ptr<const Materials> plainMaterials(std::size_t count) {
-  auto materials = std::make_shared<Materials>();
-  materials->roughness.assign(count, 0.6f);
-  materials->base_color = ShBlock(count, 3);
-  materials->ambient_occlusion = ShBlock(count, 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (int c = 0; c < 3; ++c) materials->base_color.of(i)[c] = ((c == 0 ? 0.6f : 0.2f) - 0.5f) / kShC0;
-    materials->ambient_occlusion.of(i)[0] = 0.5f / kShC0;
-  }
-  return materials;
-}
+using testing::meanColor;
+using testing::plainMaterials;
+using testing::threeBalls;
+using testing::waitFor;
 
 class SplatViewport : public ::testing::Test {
  protected:

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/gl/picture_canvas.h"
 
-#include <QFontInfo>
 #include <QOpenGLPaintDevice>
 #include <QPainter>
+
+#include <algorithm>
 
 namespace beam {
 namespace {
 
 constexpr float kBackdrop[3] = {27 / 255.0f, 28 / 255.0f, 30 / 255.0f};
+constexpr double kMargin_px = 10, kGap_px = 6;
 
 }  // namespace
 
@@ -27,9 +29,10 @@ PictureCanvas::~PictureCanvas() {
 }
 
 void PictureCanvas::setPicture(int layer, SharedPicture picture) {
+  update();
+  if (picture == pictures_[layer]) return;
   pictures_[layer] = std::move(picture);
   stale_[layer] = true;
-  update();
 }
 
 void PictureCanvas::initializeGL() {
@@ -65,55 +68,42 @@ void PictureCanvas::paintGL() {
   painter.setFont(font());
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setRenderHint(QPainter::TextAntialiasing);
+  words_ = {};
   paintOver(painter);
 }
 
-QRectF paintLabel(QPainter& painter, QPointF at, Qt::Alignment alignment, const QString& text) {
-  if (text.isEmpty()) return {};
-  const QRectF words = painter.fontMetrics().boundingRect(QRect(0, 0, 2000, 1000), Qt::AlignLeft, text);
-  QRectF box(at, words.size() + QSizeF(16, 8));
-  if (alignment & Qt::AlignRight) box.moveRight(at.x());
-  if (alignment & Qt::AlignHCenter) box.moveLeft(at.x() - box.width() / 2);
-  if (alignment & Qt::AlignBottom) box.moveBottom(at.y());
-  painter.setPen(Qt::NoPen);
-  painter.setBrush(QColor(16, 17, 19, 200));
-  painter.drawRoundedRect(box, 4, 4);
-  painter.setPen(QColor(226, 228, 232));
-  painter.drawText(box, Qt::AlignCenter, text);
-  return box;
+void PictureCanvas::setBadge(const QString& badge) {
+  if (badge == badge_) return;
+  badge_ = badge;
+  update();
 }
 
-void paintScale(QPainter& painter, QPointF at, const Limits& limits, const QString& unit) {
-  constexpr double kWidth = 14, kHeight = 180, kWords = 84;
-  constexpr int kTicks = 4;
-  const QRectF bar(at.x() - kWidth, at.y() + 10, kWidth, kHeight);
-  painter.setPen(Qt::NoPen);
-  painter.setBrush(QColor(16, 17, 19, 200));
-  painter.drawRoundedRect(bar.adjusted(-kWords, -14, 8, 14), 4, 4);
-  for (int y = 0; y < static_cast<int>(kHeight); ++y) {
-    const u8vec3 c = falseColor(1 - static_cast<float>(y) / static_cast<float>(kHeight));
-    painter.fillRect(QRectF(bar.left(), bar.top() + y, kWidth, 1.2), QColor(c.x, c.y, c.z));
-  }
-  painter.setPen(QColor(206, 210, 216));
-  for (int tick = 0; tick <= kTicks; ++tick) {
-    const float value = limits.high - static_cast<float>(tick) / kTicks * (limits.high - limits.low);
-    const QRectF where(bar.left() - kWords, bar.top() + kHeight * tick / kTicks - 9, kWords - 8, 18);
-    painter.drawText(where, Qt::AlignRight | Qt::AlignVCenter, QString::asprintf("%.2f ", value) + unit);
-  }
+void PictureCanvas::paintWords(QPainter& painter, const QString& title, const QString& foot) {
+  words_.title = paintLabel(painter, {kMargin_px, kMargin_px}, Qt::AlignLeft | Qt::AlignTop, title,
+                            {.width_px = width() - 2 * kMargin_px});
+  paintBadge(painter, words_.title.bottom());
+  paintFoot(painter, foot);
 }
 
-void paintMessage(QPainter& painter, const QRectF& area, const QString& title, const QString& body) {
-  QFont font = painter.font();
-  const QFont plain = font;
-  font.setPixelSize(QFontInfo(plain).pixelSize() * 3 / 2);
-  painter.setFont(font);
-  painter.setPen(QColor(206, 210, 216));
-  const QRectF upper(area.left(), area.top(), area.width(), area.height() / 2 - 6);
-  painter.drawText(upper, Qt::AlignHCenter | Qt::AlignBottom, title);
-  painter.setFont(plain);
-  painter.setPen(QColor(146, 152, 160));
-  const QRectF lower(area.left(), area.center().y() + 6, area.width(), area.height() / 2 - 6);
-  painter.drawText(lower, Qt::AlignHCenter | Qt::AlignTop | Qt::TextWordWrap, body);
+void PictureCanvas::paintBadge(QPainter& painter, double top_px) {
+  words_.badge = paintLabel(painter, {kMargin_px, top_px + kGap_px}, Qt::AlignLeft | Qt::AlignTop, badge_,
+                            {.width_px = width() - 2 * kMargin_px, .tone = LabelTone::Warning});
+}
+
+void PictureCanvas::paintFoot(QPainter& painter, const QString& foot) {
+  words_.foot = paintLabel(painter, {kMargin_px, height() - kMargin_px}, Qt::AlignLeft | Qt::AlignBottom,
+                           foot, {.width_px = width() - 2 * kMargin_px});
+}
+
+void PictureCanvas::paintLegend(QPainter& painter, const Limits& limits, const QString& unit) {
+  const double left = width() - kMargin_px - scaleWidth(painter, limits, unit) - kGap_px;
+  double top = kMargin_px, bottom = height() - kMargin_px;
+  for (const QRectF& box : {words_.title, words_.badge}) {
+    if (box.right() > left) top = std::max(top, box.bottom() + kGap_px);
+  }
+  if (words_.foot.right() > left) bottom = words_.foot.top() - kGap_px;
+  words_.scale =
+      paintScale(painter, QRectF(QPointF(left, top), QPointF(width() - kMargin_px, bottom)), limits, unit);
 }
 
 }  // namespace beam

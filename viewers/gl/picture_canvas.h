@@ -3,6 +3,7 @@
 // the first by opacity or beside it by a wipe, and words painted on top. Derived classes say where and what.
 #pragma once
 
+#include <QImage>
 #include <QOpenGLWidget>
 #include <QString>
 
@@ -10,10 +11,8 @@
 #include <memory>
 #include <optional>
 
-#include "viewers/false_color.h"
+#include "viewers/gl/painted_words.h"
 #include "viewers/gl/quad_painter.h"
-
-class QPainter;
 
 namespace beam {
 
@@ -27,6 +26,11 @@ struct PictureLayout {
   bool crisp = false;
 };
 
+// Where the words of the last painting are; empty: there are none.
+struct WordBoxes {
+  QRectF title, badge, foot, scale;
+};
+
 class PictureCanvas : public QOpenGLWidget {
   Q_OBJECT
 
@@ -34,12 +38,28 @@ class PictureCanvas : public QOpenGLWidget {
   explicit PictureCanvas(QWidget* parent = nullptr);
   ~PictureCanvas() override;
 
+  // What is not as usual with everything shown here ("stale: made with other settings"), in amber under the
+  // title; empty: nothing. Costs a repaint, no rendering.
+  void setBadge(const QString& badge);
+  const QString& badge() const { return badge_; }
+  // What is seen, with its words.
+  QImage picture() { return grabFramebuffer(); }
+  const WordBoxes& words() const { return words_; }
+
  protected:
   // `layer` 0 or 1; null takes the picture away.
   void setPicture(int layer, SharedPicture picture);
   bool hasPicture(int layer) const { return pictures_[layer] != nullptr; }
   virtual PictureLayout pictureLayout() const = 0;
   virtual void paintOver(QPainter& painter) = 0;
+  // The title in the upper left corner with the badge under it, and a note in the lower left one.
+  void paintWords(QPainter& painter, const QString& title, const QString& foot);
+  // The badge alone, for views that place their titles themselves; `top_px` is where they end.
+  void paintBadge(QPainter& painter, double top_px);
+  void paintFoot(QPainter& painter, const QString& foot);
+  // The legend of false colours in the right column, clear of the words painted before.
+  void paintLegend(QPainter& painter, const Limits& limits, const QString& unit);
+  void titleIs(const QRectF& box) { words_.title = box; }
 
   void initializeGL() override;
   void paintGL() override;
@@ -49,14 +69,8 @@ class PictureCanvas : public QOpenGLWidget {
   std::array<bool, 2> stale_{};  // the texture holds another picture
   std::array<Texture, 2> textures_;
   std::unique_ptr<QuadPainter> quads_;
+  QString badge_;
+  WordBoxes words_;
 };
-
-// A label in a rounded box with its corner at `at`; `alignment` says which corner (Qt::AlignLeft |
-// Qt::AlignTop ...).
-QRectF paintLabel(QPainter& painter, QPointF at, Qt::Alignment alignment, const QString& text);
-// The legend of false colours: a bar with values beside it, its upper right corner at `at`.
-void paintScale(QPainter& painter, QPointF at, const Limits& limits, const QString& unit);
-// Several lines, centred, for empty states.
-void paintMessage(QPainter& painter, const QRectF& area, const QString& title, const QString& body);
 
 }  // namespace beam

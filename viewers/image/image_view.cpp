@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/image/image_view.h"
 
-#include <QKeyEvent>
-#include <QMouseEvent>
 #include <QPainter>
-#include <QWheelEvent>
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +9,28 @@
 namespace beam {
 namespace {
 
-constexpr double kWipeReach_px = 8;
 constexpr double kCrispFrom = 2;  // zoom at which pixels become squares
-constexpr int kWheelUnits = 120;
+constexpr double kBeside_px = 10;
+
+bool sameColours(const Picture& own, const Picture* other) {
+  return other != nullptr && own.false_color && other->false_color && other->unit == own.unit;
+}
 
 // Same limits on both sides, so that colours compare: those of `other` where it has some of the same unit.
-Limits limitsFor(const Picture& own, const Picture* other) {
-  const bool common = other != nullptr && other->false_color && other->unit == own.unit;
-  return own.unit.empty() ? Limits{} : robustLimits((common ? *other : own).values.values);
+Limits limitsFor(const Picture& own, const Picture* other, const std::map<std::string, Limits>& locked) {
+  if (!own.false_color) return {};
+  if (const auto held = locked.find(own.unit); held != locked.end()) return held->second;
+  return own.unit.empty() ? Limits{} : robustLimits((sameColours(own, other) ? *other : own).values.values);
+}
+
+bool same(const Limits& a, const Limits& b) { return a.low == b.low && a.high == b.high; }
+
+void setLock(std::map<std::string, Limits>& locks, const std::string& unit, std::optional<Limits> limits) {
+  if (limits) {
+    locks[unit] = *limits;
+  } else {
+    locks.erase(unit);
+  }
 }
 
 }  // namespace
@@ -32,17 +43,20 @@ void ImageView::setPicture(int side, const QString& label, PictureLoader loader)
   sides_[side].note.clear();
   sides_[side].loader = std::move(loader);
   sides_[side].picture = nullptr;
-  PictureCanvas::setPicture(side, nullptr);
+  sides_[side].pixels = nullptr;
   refresh(side);
+  compare();
 }
 
 ImageView::Answer ImageView::answerOf(const PictureLoader& loader, std::shared_ptr<const Picture> loaded,
-                                      const std::shared_ptr<const Picture>& other, float exposure_stops) {
+                                      const std::shared_ptr<const Picture>& other, float exposure_stops,
+                                      const Locks& locked) {
   Answer answer;
   try {
     answer.picture = loaded ? std::move(loaded) : std::make_shared<const Picture>(loader());
-    const Limits limits = limitsFor(*answer.picture, other.get());
-    answer.pixels = std::make_shared<Image<u8vec4>>(displayed(*answer.picture, exposure_stops, limits));
+    answer.limits = limitsFor(*answer.picture, other.get(), locked);
+    answer.pixels =
+        std::make_shared<Image<u8vec4>>(displayed(*answer.picture, exposure_stops, answer.limits));
   } catch (const std::exception& e) {  // the border of this thread: said in the view
     answer.note = QString::fromStdString(e.what());
   }
@@ -54,16 +68,16 @@ void ImageView::refresh(int side) {
   const std::uint64_t ticket = ++s.ticket;
   if (!s.loader) {
     s.seen = ticket;
-    update();
+    arrange();
     return;
   }
   const std::shared_ptr<const Picture> other = side == 1 ? sides_[0].picture : nullptr;
-  workers_[side].submit(
-      [this, side, ticket, other, loader = s.loader, loaded = s.picture, exposure = exposure_stops_] {
-        const Answer answer = answerOf(loader, loaded, other, exposure);
-        QMetaObject::invokeMethod(
-            this, [this, side, ticket, answer] { take(side, ticket, answer); }, Qt::QueuedConnection);
-      });
+  workers_[side].submit([this, side, ticket, other, loader = s.loader, loaded = s.picture,
+                         exposure = exposure_stops_, locked = locked_] {
+    const Answer answer = answerOf(loader, loaded, other, exposure, locked);
+    QMetaObject::invokeMethod(
+        this, [this, side, ticket, answer] { take(side, ticket, answer); }, Qt::QueuedConnection);
+  });
 }
 
 void ImageView::take(int side, std::uint64_t ticket, const Answer& answer) {
@@ -71,20 +85,92 @@ void ImageView::take(int side, std::uint64_t ticket, const Answer& answer) {
   if (s.ticket != ticket) return;
   s.seen = ticket;
   s.picture = answer.picture;
+  s.pixels = answer.pixels;
+  s.limits = answer.limits;
   s.note = answer.note;
-  PictureCanvas::setPicture(side, answer.pixels);
+  arrange();
+  compare();
+  // B was encoded before A was there to give the limits.
+  const Side& b = sides_[1];
+  if (side == 0 && s.picture && b.picture && sameColours(*s.picture, b.picture.get()) &&
+      !same(s.limits, b.limits)) {
+    refresh(1);
+  }
+  Q_EMIT legendChanged();
   Q_EMIT pictureShown();
 }
 
 bool ImageView::settled() const {
-  return std::all_of(sides_.begin(), sides_.end(), [](const Side& s) { return s.seen == s.ticket; });
+  return compare_seen_ == compare_ticket_ &&
+         std::all_of(sides_.begin(), sides_.end(), [](const Side& s) { return s.seen == s.ticket; });
+}
+
+ImageView::Compared ImageView::comparedOf(Compared c, const Locks& locked) {
+  try {
+    if (!c.difference) {
+      const auto masked = std::find_if(c.of.begin(), c.of.end(),
+                                       [](const auto& picture) { return static_cast<bool>(picture->mask); });
+      const bool comparable = incomparable(*c.of[0], *c.of[1]).empty();
+      c.difference = std::make_shared<const Difference>(
+          differenceOf(*c.of[0], *c.of[1],
+                       comparable && masked != c.of.end() ? (*masked)->mask() : Image<std::uint8_t>()));
+    }
+    const auto held = locked.find(c.difference->map.unit);
+    c.limits = held != locked.end() ? held->second : limitsOf(*c.difference);
+    c.pixels = std::make_shared<Image<u8vec4>>(displayed(*c.difference, c.limits));
+  } catch (const std::exception& e) {  // the border of this thread: said in the view
+    c.note = QString::fromStdString(e.what());
+  }
+  return c;
+}
+
+// Made of the pictures as they are, not as exposed; what is known of the same two is kept.
+void ImageView::compare() {
+  const std::uint64_t ticket = ++compare_ticket_;
+  const std::array<std::shared_ptr<const Picture>, 2> pair{sides_[0].picture, sides_[1].picture};
+  if (compared_.of != pair)
+    compared_ = {.of = pair, .difference = {}, .limits = {}, .pixels = {}, .note = {}};
+  arrange();
+  if (!comparing()) {
+    compare_seen_ = ticket;
+    return;
+  }
+  compare_worker_.submit([this, ticket, known = compared_, locked = locked_differences_] {
+    const Compared answer = comparedOf(known, locked);
+    QMetaObject::invokeMethod(
+        this,
+        [this, ticket, answer] {
+          if (ticket != compare_ticket_) return;
+          compare_seen_ = ticket;
+          compared_ = answer;
+          arrange();
+          Q_EMIT legendChanged();
+          Q_EMIT pictureShown();
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+void ImageView::arrange() {
+  PictureCanvas::setPicture(0, showsDifference() ? compared_.pixels : sides_[0].pixels);
+  PictureCanvas::setPicture(1, sides_[1].pixels);
 }
 
 void ImageView::setWipe(bool on) {
   if (wipe_on_ == on) return;
   wipe_on_ = on;
+  if (on) setDifference(false);
   update();
   Q_EMIT wipeChanged(on);
+}
+
+void ImageView::setDifference(bool on) {
+  if (difference_on_ == on) return;
+  difference_on_ = on;
+  if (on) setWipe(false);
+  compare();
+  Q_EMIT differenceChanged(on);
+  Q_EMIT legendChanged();
 }
 
 void ImageView::setExposure(float stops) {
@@ -102,14 +188,79 @@ void ImageView::swapSides() {
   std::swap(sides_[0].label, sides_[1].label);
   std::swap(sides_[0].loader, sides_[1].loader);
   std::swap(sides_[0].picture, sides_[1].picture);
+  std::swap(sides_[0].pixels, sides_[1].pixels);
+  std::swap(sides_[0].limits, sides_[1].limits);
   std::swap(sides_[0].note, sides_[1].note);
   refresh(0);
   refresh(1);
+  compare();
   Q_EMIT sidesSwapped();
 }
 
+void ImageView::resetState() {
+  exposure_stops_ = 0;
+  locked_.clear();
+  locked_differences_.clear();
+  wipe_share_ = 0.5;
+  setWipe(false);
+  setDifference(false);
+  setBadge({});
+  for (int side = 0; side < 2; ++side) setPicture(side, {}, {});
+  fit();
+  Q_EMIT legendChanged();
+}
+
+const ImageView::Side* ImageView::falseColored() const {
+  const auto found = std::find_if(sides_.begin(), sides_.end(),
+                                  [](const Side& s) { return s.picture && s.picture->false_color; });
+  return found == sides_.end() ? nullptr : &*found;
+}
+
+LegendState ImageView::legend() const {
+  if (apart()) {
+    if (!compared_.pixels) return {};
+    const std::string& unit = compared_.difference->map.unit;
+    return {true, locked_differences_.contains(unit), compared_.limits, QString::fromStdString(unit)};
+  }
+  const Side* side = falseColored();
+  if (side == nullptr) return {};
+  const std::string& unit = side->picture->unit;
+  return {true, locked_.contains(unit), side->limits, QString::fromStdString(unit)};
+}
+
+void ImageView::lockLimits(std::optional<Limits> limits) {
+  const LegendState state = legend();
+  if (!state.shown) return;
+  const std::string unit = state.unit.toStdString();
+  if (apart()) {
+    setLock(locked_differences_, unit, limits);
+    return compare();
+  }
+  setLock(locked_, unit, limits);
+  refresh(0);
+  refresh(1);
+}
+
+QString ImageView::verdict() const {
+  if (!difference_on_) return {};
+  if (!compared_.note.isEmpty()) return "No difference: " + compared_.note;
+  if (comparing()) {
+    return compared_.difference ? QString::fromStdString(describe(*compared_.difference))
+                                : "Comparing A and B";
+  }
+  for (const Side& s : sides_) {
+    if (!s.note.isEmpty()) return "No difference: " + s.note;
+    if (!s.loader) return "No difference: choose a picture for A and one for B.";
+  }
+  return "Reading A and B";
+}
+
+const Picture* ImageView::anyPicture() const {
+  return sides_[0].picture ? sides_[0].picture.get() : sides_[1].picture.get();
+}
+
 QRectF ImageView::pictureRect() const {
-  const Picture* p = sides_[0].picture ? sides_[0].picture.get() : sides_[1].picture.get();
+  const Picture* p = anyPicture();
   if (p == nullptr) return {};
   const double w = p->values.width, h = p->values.height;
   if (zoom_ == 0) {
@@ -124,7 +275,7 @@ PictureLayout ImageView::pictureLayout() const {
   PictureLayout layout;
   const QRectF target = pictureRect();
   layout.target = {target, target};
-  const Picture* p = sides_[0].picture ? sides_[0].picture.get() : sides_[1].picture.get();
+  const Picture* p = anyPicture();
   layout.crisp = p != nullptr && target.width() >= kCrispFrom * p->values.width;
   if (peek_ || !sides_[0].picture) {
     layout.over_opacity = 1;
@@ -134,16 +285,36 @@ PictureLayout ImageView::pictureLayout() const {
   return layout;
 }
 
-void ImageView::paintOver(QPainter& painter) {
-  const bool nothing = !sides_[0].picture && !sides_[1].picture;
-  const QString note = !sides_[0].note.isEmpty() ? sides_[0].note : sides_[1].note;
-  if (nothing && note.isEmpty()) {
-    paintMessage(painter, rect(), !settled() ? "Reading" : "No picture chosen",
-                 !settled() ? sides_[0].label : QString("Choose a camera and a picture above."));
-    return;
+QString ImageView::sideText(int side) const {
+  const Side& s = sides_[side];
+  QString text =
+      (side == 0 ? "A  " : "B  ") + (s.picture ? QString::fromStdString(s.picture->label) : s.label);
+  const bool exposed = s.picture && s.picture->encoding != Encoding::Data;
+  if (exposure_stops_ != 0 && exposed) text += QString::asprintf(" · exposure %+.1f stops", exposure_stops_);
+  return text;
+}
+
+QString ImageView::footText() const {
+  QStringList notes;
+  for (const Side& s : sides_) {
+    if (!s.note.isEmpty()) notes << s.note;
   }
-  if (nothing) {
-    paintMessage(painter, rect().adjusted(60, 0, -60, 0), "This picture cannot be shown", note);
+  if (notes.isEmpty()) return apart() ? QString() : verdict();
+  return notes.join("\n");
+}
+
+void ImageView::paintOver(QPainter& painter) {
+  const QString foot = footText();
+  if (anyPicture() == nullptr) {
+    const QRectF area = rect();
+    if (!settled()) {
+      paintMessage(painter, area, "Reading", sides_[0].label);
+    } else if (foot.isEmpty() || !(sides_[0].loader || sides_[1].loader)) {
+      paintMessage(painter, area, "No picture chosen", "Choose a camera and a picture above.");
+    } else {
+      paintMessage(painter, area, "This picture cannot be shown", foot);
+    }
+    paintBadge(painter, 0);
     return;
   }
   if (showsWipe() && !peek_) {
@@ -154,144 +325,29 @@ void ImageView::paintOver(QPainter& painter) {
     painter.setPen(Qt::NoPen);
     painter.drawEllipse(QPointF(x, height() / 2.0), 6, 6);
   }
-  paintSideLabels(painter);
-  paintLegend(painter);
-  paintLabel(painter, {10, height() - 10.0}, Qt::AlignLeft | Qt::AlignBottom, note);
+  paintTitles(painter);
+  paintFoot(painter, foot);
+  const LegendState colors = legend();
+  if (colors.shown && (!apart() || showsDifference())) paintLegend(painter, colors.limits, colors.unit);
 }
 
-void ImageView::paintSideLabels(QPainter& painter) const {
-  const auto words = [&](int side) {
-    const Side& s = sides_[side];
-    QString text = s.picture ? QString::fromStdString(s.picture->label) : s.label;
-    if (exposure_stops_ != 0) text += QString::asprintf(" · exposure %+.1f", exposure_stops_);
-    return text;
-  };
+void ImageView::paintTitles(QPainter& painter) {
   if (showsWipe() && !peek_) {
     const double x = wipe_share_ * width();
-    paintLabel(painter, {x - 10, 10}, Qt::AlignRight | Qt::AlignTop, "A  " + words(0));
-    paintLabel(painter, {x + 10, 10}, Qt::AlignLeft | Qt::AlignTop, "B  " + words(1));
-  } else {
-    const int side = peek_ || !sides_[0].picture ? 1 : 0;
-    paintLabel(painter, {10, 10}, Qt::AlignLeft | Qt::AlignTop, (side == 0 ? "A  " : "B  ") + words(side));
+    const QRectF left = paintLabel(painter, {x - kBeside_px, kBeside_px}, Qt::AlignRight | Qt::AlignTop,
+                                   sideText(0), {.width_px = x - 2 * kBeside_px});
+    const QRectF right = paintLabel(painter, {x + kBeside_px, kBeside_px}, Qt::AlignLeft | Qt::AlignTop,
+                                    sideText(1), {.width_px = width() - x - 2 * kBeside_px});
+    titleIs(left | right);
+    return paintBadge(painter, (left | right).bottom());
   }
-}
-
-void ImageView::paintLegend(QPainter& painter) const {
-  const Picture* p = nullptr;
-  for (const Side& s : sides_) {
-    if (p == nullptr && s.picture && s.picture->false_color) p = s.picture.get();
-  }
-  if (p == nullptr) return;
-  paintScale(painter, {width() - 18.0, 14}, limitsFor(*p, sides_[0].picture.get()),
-             QString::fromStdString(p->unit));
-}
-
-bool ImageView::nearWipe(QPointF position) const {
-  return showsWipe() && std::abs(position.x() - wipe_share_ * width()) < kWipeReach_px;
-}
-
-void ImageView::mousePressEvent(QMouseEvent* event) {
-  setFocus();
-  last_mouse_ = event->localPos();
-  drag_ = event->button() == Qt::LeftButton && nearWipe(last_mouse_) ? Drag::Wipe : Drag::Pan;
-}
-
-void ImageView::mouseMoveEvent(QMouseEvent* event) {
-  const QPointF position = event->localPos(), move = position - last_mouse_;
-  last_mouse_ = position;
-  if (drag_ == Drag::Wipe) {
-    wipe_share_ = std::clamp(position.x() / width(), 0.0, 1.0);
-    update();
-  } else if (drag_ == Drag::Pan) {
-    const QRectF target = pictureRect();
-    const Picture* p = sides_[0].picture ? sides_[0].picture.get() : sides_[1].picture.get();
-    if (p == nullptr) return;
-    zoom_ = target.width() / p->values.width;
-    center_ = (rect().center() - target.topLeft() - move) / zoom_;
-    update();
-  }
-  setCursor(nearWipe(position) || drag_ == Drag::Wipe ? Qt::SplitHCursor : Qt::ArrowCursor);
-  reportHover(position);
-}
-
-void ImageView::mouseReleaseEvent(QMouseEvent*) { drag_ = Drag::None; }
-void ImageView::mouseDoubleClickEvent(QMouseEvent*) { fit(); }
-void ImageView::leaveEvent(QEvent*) { Q_EMIT hovered({}); }
-
-void ImageView::wheelEvent(QWheelEvent* event) {
-  const Picture* p = sides_[0].picture ? sides_[0].picture.get() : sides_[1].picture.get();
-  if (p == nullptr) return;
-  const QRectF before = pictureRect();
-  const double zoom_before = before.width() / p->values.width;
-  const double zoom_after =
-      std::clamp(zoom_before * std::pow(1.2, event->angleDelta().y() / double(kWheelUnits)), 0.05, 64.0);
-  const QPointF under = (event->position() - before.topLeft()) / zoom_before;
-  zoom_ = zoom_after;
-  // The pixel under the hand stays there.
-  center_ = under + (QPointF(width() / 2.0, height() / 2.0) - event->position()) / zoom_after;
-  update();
-}
-
-void ImageView::reportHover(QPointF position) {
-  const bool second = peek_ || !sides_[0].picture || (showsWipe() && position.x() >= wipe_share_ * width());
-  const Side& s = sides_[second ? 1 : 0];
-  const QRectF target = pictureRect();
-  if (!s.picture || !target.contains(position)) {
-    Q_EMIT hovered({});
-    return;
-  }
-  const auto pixel = [&](double share, int size) {
-    return std::clamp(static_cast<int>(share * size), 0, size - 1);
-  };
-  const int x = pixel((position.x() - target.left()) / target.width(), s.picture->values.width);
-  const int y = pixel((position.y() - target.top()) / target.height(), s.picture->values.height);
-  Q_EMIT hovered(QString("%1  x %2  y %3   %4")
-                     .arg(second ? "B" : "A")
-                     .arg(x)
-                     .arg(y)
-                     .arg(QString::fromStdString(describePixel(*s.picture, x, y))));
-}
-
-bool ImageView::handleKey(const QKeyEvent& event) {
-  if (event.modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) return false;
-  const bool shift = (event.modifiers() & Qt::ShiftModifier) != 0;
-  switch (event.key()) {
-    case Qt::Key_W:
-      setWipe(!wipe_on_);
-      return true;
-    case Qt::Key_T:
-      swapSides();
-      return true;
-    case Qt::Key_E:
-      setExposure(exposure_stops_ + (shift ? -0.5f : 0.5f));
-      return true;
-    case Qt::Key_R:
-      setExposure(0);
-      return true;
-    case Qt::Key_F:
-    case Qt::Key_H:
-      fit();
-      return true;
-    default:
-      return false;
-  }
-}
-
-void ImageView::keyPressEvent(QKeyEvent* event) {
-  if (event->key() == Qt::Key_Shift && sides_[1].picture) {
-    peek_ = true;
-    update();
-  } else if (!handleKey(*event)) {
-    PictureCanvas::keyPressEvent(event);
-  }
-}
-
-void ImageView::keyReleaseEvent(QKeyEvent* event) {
-  if (event->key() == Qt::Key_Shift) {
-    peek_ = false;
-    update();
-  }
-  PictureCanvas::keyReleaseEvent(event);
+  const int side = peek_ || !sides_[0].picture ? 1 : 0;
+  const bool apart = comparing() && !peek_;
+  const QString title =
+      apart ? "|A − B| · " + sideText(0) + " · " + sideText(1) + "\n" + verdict() : sideText(side);
+  titleIs(paintLabel(painter, {kBeside_px, kBeside_px}, Qt::AlignLeft | Qt::AlignTop, title,
+                     {.width_px = width() - 2 * kBeside_px}));
+  paintBadge(painter, words().title.bottom());
 }
 
 }  // namespace beam

@@ -24,7 +24,8 @@ Picture planesOf(const Image<T>& image, std::string label, float scale) {
   Picture p{.label = std::move(label),
             .values = Planes(image.width, image.height, channels),
             .encoding = image.encoding,
-            .unit = {}};
+            .unit = {},
+            .mask = {}};
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     for (int c = 0; c < channels; ++c) p.values.plane(c)[i] = scale * static_cast<float>(image.pixels[i][c]);
   }
@@ -47,7 +48,8 @@ Picture pictureOf(const Image<std::uint8_t>& mask, std::string label) {
   Picture p{.label = std::move(label),
             .values = Planes(mask.width, mask.height, 1),
             .encoding = Encoding::Data,
-            .unit = {}};
+            .unit = {},
+            .mask = {}};
   for (std::size_t i = 0; i < mask.pixels.size(); ++i)
     p.values.values[i] = static_cast<float>(mask.pixels[i]) / 255;
   return p;
@@ -57,7 +59,8 @@ Picture pictureOf(const Image<float>& image, std::string label) {
   Picture p{.label = std::move(label),
             .values = Planes(image.width, image.height, 1),
             .encoding = Encoding::Data,
-            .unit = {}};
+            .unit = {},
+            .mask = {}};
   p.values.values = image.pixels;
   return p;
 }
@@ -67,7 +70,9 @@ Image<u8vec4> displayed(const Picture& p, float exposure_stops, const Limits& li
   const float gain = std::exp2(exposure_stops);
   const SrgbEncoder& encode = SrgbEncoder::instance();
   const auto shown = [&](vec3 v) -> u8vec3 {
-    if (p.false_color) return v.x == 0 ? u8vec3(27, 28, 30) : falseColor(v.x, limits);
+    if (p.false_color) {
+      return v.x == p.nothing || std::isnan(v.x) ? u8vec3(27, 28, 30) : falseColor(v.x, limits);
+    }
     switch (p.encoding) {
       case Encoding::Srgb:
         return exposure_stops == 0 ? asByte(v) : encode(gain * linearFromSrgb(v));

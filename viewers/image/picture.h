@@ -17,7 +17,10 @@ struct Picture {
   Encoding encoding =
       Encoding::Linear;      // Srgb: encoded values in [0, 1]; Data: one channel grey, three a direction
   bool false_color = false;  // one channel, by limits
+  float nothing = 0;         // in false colours: the value, beside NaN, that stands for nothing there
   std::string unit;
+  // Of a photograph: its mask, read where it is asked for (a background thread); unset: there is none.
+  std::function<Image<std::uint8_t>()> mask;
 };
 
 // Called on a background thread; throws Error with words for the user.

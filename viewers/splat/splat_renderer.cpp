@@ -30,23 +30,16 @@ Image<vec3> skyOf(const Camera& camera, const PreparedLight& light, float yaw_ra
   return sky;
 }
 
-// What to show instead of a channel that cannot be, and why.
-Channel shownChannel(const SplatRequest& request, std::string& note) {
-  const bool materials = request.scene.materials != nullptr;
-  const char* title = infoOf(request.channel).title;
+Lack lackOf(const SplatRequest& request) {
   switch (request.channel) {
     case Channel::Lit:
-      if (materials && request.light) return Channel::Lit;
-      note = materials ? "No light chosen: showing radiance. Choose or open a panorama under Display."
-                       : "No materials yet: showing radiance. Run until Materials to relight.";
-      return Channel::Radiance;
+      return !request.scene.materials ? Lack::Materials : !request.light ? Lack::Light : Lack::None;
     case Channel::BaseColor:
     case Channel::AmbientOcclusion:
     case Channel::Roughness:
-      if (!materials) note = std::string(title) + " is not there yet. Run until Materials to see it.";
-      return request.channel;
+      return request.scene.materials ? Lack::None : Lack::Materials;
     default:
-      return request.channel;
+      return Lack::None;
   }
 }
 
@@ -81,7 +74,10 @@ SplatPicture SplatRenderer::render(const SplatRequest& r) {
   const auto start = std::chrono::steady_clock::now();
   SplatPicture picture;
   picture.camera = r.camera;
-  picture.channel = shownChannel(r, picture.note);
+  picture.wanted = r.channel;
+  picture.lack = lackOf(r);
+  const bool dark = r.channel == Channel::Lit && picture.lack != Lack::None;
+  picture.channel = dark ? Channel::Radiance : r.channel;
   const GBuffer& gbuffer = gbufferFor(r);
   static const auto none = std::make_shared<const Image<vec3>>();
   const Image<vec3>& lit = picture.channel == Channel::Lit ? litFor(r) : *none;

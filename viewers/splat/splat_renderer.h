@@ -28,6 +28,9 @@ struct SplatRequest {
   bool sky = false;
 };
 
+// What a channel that was asked for cannot be shown without.
+enum class Lack { None, Light, Materials };
+
 struct SplatPicture {
   Image<u8vec4> pixels;  // sRGB
   std::shared_ptr<const GBuffer> gbuffer;
@@ -35,7 +38,9 @@ struct SplatPicture {
   Camera camera;
   Channel channel = Channel::Lit;  // what is shown: Radiance where Lit could not be
   Limits limits;
-  std::string note;  // why something else than asked is shown; empty: nothing to say
+  Channel wanted = Channel::Lit;
+  Lack lack = Lack::None;
+  std::string error;  // why there is no picture; empty: there is one
   double milliseconds = 0;
 };
 

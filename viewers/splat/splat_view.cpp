@@ -64,7 +64,7 @@ void SplatView::setScene(const SplatScene& scene, const QString& caption) {
     setPicture(0, nullptr);
     return;
   }
-  if (!framed_) frameScene();
+  if (!framed_) turnHome();
   framed_ = true;
   if (passing_ == 0) return changed(Pace::Resting);
   request(passing_);
@@ -80,17 +80,35 @@ void SplatView::setPassing(int divisor) {
 
 void SplatView::setCapture(std::shared_ptr<const CaptureSet> capture, FrameIndex frame) {
   const bool same = capture == capture_;
+  if (same && frame.value == frame_.value) return;
   capture_ = std::move(capture);
   frame_ = frame;
-  photo_of_.reset();
+  dropPhoto();  // of another frame
   if (same) return loadPhoto();
   framed_ = false;
   lookThrough(std::nullopt);
 }
 
-void SplatView::setLight(std::shared_ptr<const PreparedLight> light, const QString& name) {
+void SplatView::setLight(std::shared_ptr<const PreparedLight> light, const QString& name, bool reading) {
+  light_being_read_ = reading && !light ? name : QString();
+  update();
+  if (!light_being_read_.isEmpty() && light_) return;
+  const bool same = light == light_;
   light_ = std::move(light);
   light_name_ = name;
+  if (!same) changed(Pace::Resting);
+}
+
+void SplatView::resetState() {
+  state_ = {};
+  keep_photo_opacity_ = false;
+  framed_ = scene_.cloud != nullptr;
+  light_ = nullptr;
+  light_name_.clear();
+  light_being_read_.clear();
+  dropPhoto();
+  setBadge({});
+  turnHome();
   changed(Pace::Resting);
 }
 
@@ -151,7 +169,7 @@ Bounds SplatView::sceneBounds() const {
   return capture_ ? boundsOf(capture_->seed_points.position_m) : Bounds{};
 }
 
-void SplatView::frameScene() {
+void SplatView::turnHome() {
   const float field_of_view = state_.orbit.field_of_view_rad;
   state_.orbit = OrbitCamera{};
   if (capture_ && !capture_->views.empty()) {
@@ -163,8 +181,20 @@ void SplatView::frameScene() {
 }
 
 void SplatView::goHome() {
-  frameScene();
+  turnHome();
   lookThrough(std::nullopt);
+}
+
+void SplatView::frameSubject() {
+  leaveCamera();
+  state_.orbit.frame(sceneBounds());
+  changed(Pace::Resting);
+}
+
+void SplatView::setPreset(ViewPreset preset) {
+  leaveCamera();
+  state_.orbit.turnTo(preset);
+  changed(Pace::Resting);
 }
 
 void SplatView::changed(Pace pace) {
@@ -205,7 +235,7 @@ void SplatView::request(int divisor) {
     try {
       picture = renderer->render(wish);
     } catch (const std::exception& e) {  // the border of this thread: the view says it instead of a picture
-      picture.note = e.what();
+      picture.error = e.what();
     }
     auto held = std::make_shared<SplatPicture>(std::move(picture));
     QMetaObject::invokeMethod(
@@ -230,17 +260,25 @@ bool SplatView::settled() const {
   return !scene_.cloud || (shown_ticket_ == newest_ticket_ && shown_divisor_ == 1);
 }
 
-void SplatView::loadPhoto() {
-  if (state_.look_through == photo_of_) return;
-  photo_of_ = state_.look_through;
+void SplatView::dropPhoto() {
+  photo_of_.reset();
+  ++photo_ticket_;
   photo_note_.clear();
   setPicture(1, nullptr);
+}
+
+void SplatView::loadPhoto() {
+  if (state_.look_through == photo_of_) return;
+  dropPhoto();
+  photo_of_ = state_.look_through;
   if (!photo_of_ || !capture_ || !capture_->source) return;
   if (!capture_->source->has(*photo_of_, frame_)) {
-    photo_note_ = "The capture holds no photograph of this camera for this frame: only the render is shown.";
+    photo_note_ = QString("camera %1 has no photograph of frame %2: only the render is shown")
+                      .arg(QString::fromStdString(capture_->views[photo_of_->value].name),
+                           QString::fromStdString(capture_->frames[frame_.value]));
     return;
   }
-  photo_worker_.submit([this, capture = capture_, view = *photo_of_, frame = frame_] {
+  photo_worker_.submit([this, capture = capture_, view = *photo_of_, frame = frame_, ticket = photo_ticket_] {
     SharedPicture picture;
     QString note;
     try {
@@ -250,8 +288,8 @@ void SplatView::loadPhoto() {
     }
     QMetaObject::invokeMethod(
         this,
-        [this, picture, note, view] {
-          if (photo_of_ != view) return;
+        [this, picture, note, ticket] {
+          if (ticket != photo_ticket_) return;
           photo_note_ = note;
           setPicture(1, picture);
         },
@@ -294,9 +332,34 @@ QString SplatView::title() const {
     parts << "free camera";
   }
   if (!caption_.isEmpty()) parts << caption_;
-  if (state_.exposure_stops != 0)
-    parts << QString("exposure %1").arg(QString::asprintf("%+.1f", state_.exposure_stops));
+  if (state_.exposure_stops != 0) parts << QString::asprintf("exposure %+.1f stops", state_.exposure_stops);
   return parts.join(" · ");
+}
+
+QString SplatView::lackText() const {
+  const bool lit = shown_.wanted == Channel::Lit;
+  const QString then = lit ? "; radiance is shown" : "";
+  switch (shown_.lack) {
+    case Lack::None:
+      return {};
+    case Lack::Light:
+      if (!light_being_read_.isEmpty()) return "reading the light" + then;
+      return "No light chosen" + then + ". Choose or open a panorama under Display.";
+    case Lack::Materials:
+      return QString(infoOf(shown_.wanted).title) + " needs materials, which are not solved yet" + then +
+             ". Run until Materials.";
+  }
+  return {};
+}
+
+QString SplatView::noteText() const {
+  QStringList notes;
+  if (!shown_.error.empty()) notes << QString::fromStdString(shown_.error);
+  if (!photo_note_.isEmpty()) notes << photo_note_;
+  const QString lack = lackText();
+  if (!lack.isEmpty()) notes << lack;
+  if (lack.isEmpty() && !light_being_read_.isEmpty()) notes << "reading the light " + light_being_read_;
+  return notes.join("\n");
 }
 
 void SplatView::paintOver(QPainter& painter) {
@@ -307,6 +370,7 @@ void SplatView::paintOver(QPainter& painter) {
     } else {
       paintMessage(painter, rect(), "No Gaussians yet", "Press Run to compute them from the photographs.");
     }
+    paintBadge(painter, 0);
     return;
   }
   if (state_.look_through && capture_) {
@@ -314,13 +378,10 @@ void SplatView::paintOver(QPainter& painter) {
     painter.setBrush(Qt::NoBrush);
     painter.drawRect(photoFrame().adjusted(0.5, 0.5, -0.5, -0.5));
   }
-  paintLabel(painter, {10, 10}, Qt::AlignLeft | Qt::AlignTop, title());
-  const QString note = photo_note_.isEmpty() ? QString::fromStdString(shown_.note) : photo_note_;
-  paintLabel(painter, {10, height() - 10.0}, Qt::AlignLeft | Qt::AlignBottom, note);
+  paintWords(painter, title(), noteText());
   const bool depth = shown_.channel == Channel::Depth;
-  if (hasPicture(0) && shown_.note.empty() && (depth || shown_.channel == Channel::Roughness)) {
-    paintScale(painter, {width() - 18.0, 14}, shown_.limits, depth ? "m" : "");
-  }
+  if (hasPicture(0) && shown_.lack == Lack::None && (depth || shown_.channel == Channel::Roughness))
+    paintLegend(painter, shown_.limits, depth ? "m" : "");
 }
 
 void SplatView::resizeGL(int, int) { changed(Pace::Moving); }

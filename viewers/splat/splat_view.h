@@ -25,7 +25,8 @@ class SplatView final : public PictureCanvas {
   // `caption` names what is shown ("frame 000002"); an empty scene shows the empty state.
   void setScene(const SplatScene& scene, const QString& caption);
   void setCapture(std::shared_ptr<const CaptureSet> capture, FrameIndex frame);  // null: none
-  void setLight(std::shared_ptr<const PreparedLight> light, const QString& name);
+  // `reading`: the light of this name is on its way; until it is there the one before stays.
+  void setLight(std::shared_ptr<const PreparedLight> light, const QString& name, bool reading = false);
 
   const ViewState& state() const { return state_; }
   void setState(const ViewState& state);
@@ -35,7 +36,16 @@ class SplatView final : public PictureCanvas {
   void setSky(bool shown);
   void setPhotoOpacity(float opacity);
   void lookThrough(std::optional<ViewIndex> view);
+  // The first direction, with the subject filling the view.
   void goHome();
+  // The subject fills the view from where one looks.
+  void frameSubject();
+  void setPreset(ViewPreset preset);
+  // Circles the surface at this point of the widget from now on; nothing where none is.
+  void focusAt(QPointF position);
+  // As at first: what belonged to the project that was open (direction, camera, channel, light, exposure,
+  // sky, fade, badge) is gone.
+  void resetState();
 
   // Keys of product 4.6; false: not one of ours. The window passes on keys that nobody else wanted.
   bool handleKey(const QKeyEvent& event);
@@ -57,12 +67,14 @@ class SplatView final : public PictureCanvas {
   void pictureShown();
 
  protected:
+  bool event(QEvent* event) override;
   PictureLayout pictureLayout() const override;
   void paintOver(QPainter& painter) override;
   void resizeGL(int width, int height) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   void mouseReleaseEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;
   void leaveEvent(QEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
@@ -74,19 +86,24 @@ class SplatView final : public PictureCanvas {
   void request(int divisor);
   void take(SplatPicture picture, int divisor, std::uint64_t ticket);
   void loadPhoto();
-  void frameScene();
+  void dropPhoto();
+  void turnHome();
   void leaveCamera();
   void nextCamera(int step);
   void cycleChannel(int step);
+  ivec2 pixelAt(QPointF position, int width_px, int height_px) const;
   void reportHover(QPointF position);
   Camera cameraFor(int width_px, int height_px) const;
   QRectF photoFrame() const;
   QString title() const;
+  QString lackText() const;
+  QString noteText() const;
   Bounds sceneBounds() const;
 
   std::shared_ptr<SplatRenderer> renderer_;
   SplatScene scene_;
   QString caption_, light_name_;
+  QString light_being_read_;  // its name; empty: none is
   std::shared_ptr<const CaptureSet> capture_;
   FrameIndex frame_;
   std::shared_ptr<const PreparedLight> light_;
@@ -100,7 +117,8 @@ class SplatView final : public PictureCanvas {
   double full_milliseconds_ = 200;  // of the last full picture
   double half_milliseconds_ = 0;    // lately; 0: none yet since frames pass by
   int passing_ = 0;
-  std::optional<ViewIndex> photo_of_;
+  std::optional<ViewIndex> photo_of_;  // of frame_
+  std::uint64_t photo_ticket_ = 0;     // of the photograph asked for last
   QString photo_note_;
 
   QTimer rest_timer_;

@@ -6,13 +6,13 @@
 
 #include "viewers/splat/channel_picture.h"
 #include "viewers/splat/splat_view.h"
+#include "viewers/view_keys.h"
 
 namespace beam {
 namespace {
 
 constexpr float kYawPerPixel_rad = 0.01f;
 constexpr float kExposureStep = 0.5f;
-constexpr int kWheelUnits = 120;  // Qt: one notch
 
 vec2 asVec(QPointF p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 
@@ -48,24 +48,46 @@ void SplatView::mouseReleaseEvent(QMouseEvent*) {
 }
 
 void SplatView::wheelEvent(QWheelEvent* event) {
-  const float steps = static_cast<float>(event->angleDelta().y()) / kWheelUnits;
+  const float steps = wheelSteps(*event);
   if (state_.look_through) {
     setPhotoOpacity(state_.photo_opacity + 0.1f * steps);
     return;
   }
-  state_.orbit.zoom(steps);
+  state_.orbit.zoomAt(steps, asVec(event->position()), {width(), height()});
   changed(Pace::Moving);
+}
+
+void SplatView::mouseDoubleClickEvent(QMouseEvent* event) {
+  if (event->button() == Qt::LeftButton) focusAt(event->localPos());
+}
+
+// Of what is on the screen, which may lag behind the orbit.
+void SplatView::focusAt(QPointF position) {
+  if (!shown_.gbuffer || shown_.gbuffer->depth_m.empty()) return;
+  const Image<float>& depth = shown_.gbuffer->depth_m;
+  const ivec2 pixel = pixelAt(position, depth.width, depth.height);
+  const double depth_m = depth(pixel.x, pixel.y);
+  if (!(depth_m > 0)) return;
+  const dvec3 ray = rayOf(shown_.camera.intrinsics, dvec2(pixel) + 0.5);
+  const vec3 point(inverse(shown_.camera.camera_from_world) * (depth_m / ray.z * ray));
+  leaveCamera();
+  state_.orbit.focusOn(point);
+  changed(Pace::Resting);
 }
 
 void SplatView::leaveEvent(QEvent*) { Q_EMIT hovered({}); }
 
+ivec2 SplatView::pixelAt(QPointF position, int width_px, int height_px) const {
+  return {std::clamp(static_cast<int>(position.x() * width_px / width()), 0, width_px - 1),
+          std::clamp(static_cast<int>(position.y() * height_px / height()), 0, height_px - 1)};
+}
+
 void SplatView::reportHover(QPointF position) {
   if (!shown_.gbuffer || !shown_.lit || shown_.gbuffer->alpha.empty()) return;
   const Image<float>& alpha = shown_.gbuffer->alpha;
-  const int x = std::clamp(static_cast<int>(position.x() * alpha.width / width()), 0, alpha.width - 1);
-  const int y = std::clamp(static_cast<int>(position.y() * alpha.height / height()), 0, alpha.height - 1);
-  const std::string reading = describePixel(*shown_.gbuffer, *shown_.lit, shown_.channel, x, y);
-  Q_EMIT hovered(QString("x %1  y %2   %3").arg(x).arg(y).arg(QString::fromStdString(reading)));
+  const ivec2 p = pixelAt(position, alpha.width, alpha.height);
+  const std::string reading = describePixel(*shown_.gbuffer, *shown_.lit, shown_.channel, p.x, p.y);
+  Q_EMIT hovered(QString("x %1  y %2   %3").arg(p.x).arg(p.y).arg(QString::fromStdString(reading)));
 }
 
 void SplatView::nextCamera(int step) {
@@ -80,10 +102,15 @@ void SplatView::cycleChannel(int step) {
 }
 
 bool SplatView::handleKey(const QKeyEvent& event) {
+  if (const auto preset = presetOf(event)) {
+    setPreset(*preset);
+    return true;
+  }
   if (event.modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) return false;
   const bool shift = (event.modifiers() & Qt::ShiftModifier) != 0;
   const int key = event.key();
-  if (key >= Qt::Key_1 && key < Qt::Key_1 + kChannelCount) {
+  const bool pad = (event.modifiers() & Qt::KeypadModifier) != 0;  // of which some digits are directions
+  if (!pad && key >= Qt::Key_1 && key < Qt::Key_1 + kChannelCount) {
     setChannel(static_cast<Channel>(key - Qt::Key_1));
     return true;
   }
@@ -95,6 +122,8 @@ bool SplatView::handleKey(const QKeyEvent& event) {
       setChannel(Channel::Lit);
       return true;
     case Qt::Key_F:
+      frameSubject();
+      return true;
     case Qt::Key_H:
       goHome();
       return true;
@@ -110,11 +139,8 @@ bool SplatView::handleKey(const QKeyEvent& event) {
     case Qt::Key_BracketRight:
       nextCamera(1);
       return true;
-    case Qt::Key_Return:
-    case Qt::Key_Enter:
-      if (!state_.look_through) nextCamera(1);
-      return true;
     case Qt::Key_Escape:
+      if (!state_.look_through) return false;
       leaveCamera();
       return true;
     default:
@@ -122,8 +148,23 @@ bool SplatView::handleKey(const QKeyEvent& event) {
   }
 }
 
+// Ctrl and a digit of the number pad would else be taken for the window's Ctrl+1.
+bool SplatView::event(QEvent* event) {
+  if (event->type() == QEvent::ShortcutOverride && presetOf(*static_cast<QKeyEvent*>(event))) {
+    event->accept();
+    return true;
+  }
+  return PictureCanvas::event(event);
+}
+
+// Return is the view's own while it has the focus: one that a text field lets pass must not move the camera.
 void SplatView::keyPressEvent(QKeyEvent* event) {
-  if (!handleKey(*event)) PictureCanvas::keyPressEvent(event);
+  const bool enters = event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter;
+  const Qt::KeyboardModifiers others = event->modifiers() & ~Qt::KeypadModifier;
+  if (enters && others == Qt::NoModifier) {
+    if (!state_.look_through) nextCamera(1);
+  } else if (!handleKey(*event))
+    PictureCanvas::keyPressEvent(event);
 }
 
 }  // namespace beam
