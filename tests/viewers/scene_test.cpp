@@ -346,6 +346,17 @@ TEST_F(SceneHand, DrawsFewerTrianglesOfALargeMeshWhileItMoves) {
   EXPECT_EQ(view.drawnTriangles(), 200u) << "a small one is drawn whole";
 }
 
+TEST_F(SceneHand, DrawsPlainerEllipsoidsWhileItMoves) {
+  const auto cloud = ball();
+  view.setCloud(cloud);
+  settle();
+  EXPECT_EQ(view.drawnTriangles(), 128 * cloud->size());
+  wheel({200, 200}, 1);
+  EXPECT_EQ(view.drawnTriangles(), 8 * cloud->size());
+  settle();
+  EXPECT_EQ(view.drawnTriangles(), 128 * cloud->size());
+}
+
 TEST_F(SceneHand, ShowsTheInfluenceUnderThePickedJoint) {
   const auto cloud = ball();
   view.setCloud(cloud);

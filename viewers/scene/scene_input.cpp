@@ -59,8 +59,9 @@ void SceneView::State::place() {
 
 void SceneView::State::render() {
   render_timer.stop();
+  updateVisibility();
   place();
-  window->Render();
+  if (vtk->isVisible()) window->Render();
   labels->update();
 }
 
@@ -84,7 +85,6 @@ void SceneView::State::rest() {
   if (dragging) return rest_timer.start();  // the whole mesh may take a second, and the hand may go on
   rest_timer.stop();
   moving = false;
-  updateVisibility();
   render();
 }
 
@@ -201,6 +201,9 @@ bool SceneView::event(QEvent* event) {
 bool SceneView::eventFilter(QObject* watched, QEvent* event) {
   State& s = *state_;
   switch (event->type()) {
+    case QEvent::Show:
+      s.render_timer.start();
+      return false;
     case QEvent::Resize:
       s.labels->resize(static_cast<QResizeEvent*>(event)->size());
       s.render_timer.start();

@@ -6,6 +6,7 @@
 #include <QLocale>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "viewers/scene/coarse_mesh.h"
@@ -18,7 +19,8 @@ namespace {
 constexpr std::size_t kMostEllipsoids = 6000;
 constexpr std::size_t kMostMovingTriangles = 60000;  // a software OpenGL draws them in about 40 ms
 constexpr float kEllipsoidSigmas = 2;
-constexpr float kJointSize_px = 7, kFaintJointSize_px = 3;
+constexpr float kJointSize_px = 7, kSmallJointSize_px = 3, kFaintJointSize_px = 2;
+constexpr float kFewJoints = 300;  // as many squares leave the skin in view
 
 QString numberText(std::size_t number) {
   return QLocale(QLocale::English).toString(static_cast<qulonglong>(number));
@@ -80,14 +82,13 @@ void SceneView::State::updateFacts() {
 }
 
 void SceneView::State::updateVisibility() {
-  const auto is_shown = [&](SceneLayer layer) { return shown[static_cast<int>(layer)]; };
-  for (int i = 0; i < kSceneLayerCount; ++i) actors[i]->SetVisibility(shown[i]);
-  const bool stand_in =
-      moving && static_cast<vtkPolyDataMapper*>(coarse_mesh->GetMapper())->GetInput()->GetNumberOfPolys() > 0;
-  actors[static_cast<int>(SceneLayer::Mesh)]->SetVisibility(is_shown(SceneLayer::Mesh) && !stand_in);
-  coarse_mesh->SetVisibility(is_shown(SceneLayer::Mesh) && stand_in);
-  mark->SetVisibility(is_shown(SceneLayer::Cameras));
-  for (auto& name : axis_names) name->SetVisibility(is_shown(SceneLayer::Grid));
+  for (int i = 0; i < kSceneLayerCount; ++i) {
+    const bool stand_in = moving && geometryOf(coarse[i])->GetNumberOfPolys() > 0;
+    actors[i]->SetVisibility(shown[i] && !stand_in);
+    coarse[i]->SetVisibility(shown[i] && stand_in);
+  }
+  mark->SetVisibility(shown[static_cast<int>(SceneLayer::Cameras)] && marked != look_through);
+  for (auto& name : axis_names) name->SetVisibility(shown[static_cast<int>(SceneLayer::Grid)]);
 }
 
 void SceneView::State::show(SceneLayer layer, const BuiltLayer& data, const QString& count) {
@@ -97,11 +98,10 @@ void SceneView::State::show(SceneLayer layer, const BuiltLayer& data, const QStr
         ->SetInputData(geometry ? geometry : vtkSmartPointer<vtkPolyData>::New());
   };
   put(actors[i], data.full);
-  if (layer == SceneLayer::Mesh) put(coarse_mesh, data.coarse);
+  put(coarse[i], data.coarse);
   counts[i] = count;
   arrived[i] = tickets[i];
   updateFacts();
-  updateVisibility();
   render();
 }
 
@@ -170,20 +170,26 @@ void SceneView::State::buildCloud() {
   build(
       SceneLayer::Gaussians,
       [shown = cloud, shares = influenceFits() ? influence : std::make_shared<const std::vector<float>>()] {
-        return BuiltLayer{ellipsoidsOf(*shown, kMostEllipsoids, kEllipsoidSigmas, *shares), {}};
+        const auto drawn = [&](int splits) {
+          return ellipsoidsOf(*shown, kMostEllipsoids, kEllipsoidSigmas, *shares, splits);
+        };
+        return BuiltLayer{drawn(2), drawn(0)};
       },
       count);
 }
 
 void SceneView::State::buildJoints() {
   const int picked = influenceFits() ? picked_joint : -1;
-  actors[static_cast<int>(SceneLayer::Joints)]->GetProperty()->SetPointSize(picked < 0 ? kJointSize_px
-                                                                                       : kFaintJointSize_px);
   labels->update();
   if (trails.empty()) {
     build(SceneLayer::Joints, {}, {});
     return;
   }
+  const auto joints = static_cast<float>(trails.back().size());
+  const float size_px =
+      std::max(kSmallJointSize_px, kJointSize_px * std::sqrt(std::min(1.0f, kFewJoints / joints)));
+  actors[static_cast<int>(SceneLayer::Joints)]->GetProperty()->SetPointSize(picked < 0 ? size_px
+                                                                                       : kFaintJointSize_px);
   QString words = counted(trails.back().size(), "joint");
   if (trails.size() > 1) words += " with trails of " + counted(trails.size(), "frame");
   words += picked < 0 ? QString(", press one to see its influence")
@@ -191,7 +197,7 @@ void SceneView::State::buildJoints() {
   build(
       SceneLayer::Joints,
       [shown = trails, picked] {
-        return BuiltLayer{jointsOf(shown, picked), {}};
+        return BuiltLayer{jointsOf(shown, picked, shown.back().size() <= kFewJoints), {}};
       },
       words);
 }

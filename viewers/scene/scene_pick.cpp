@@ -66,13 +66,15 @@ std::optional<ViewIndex> SceneView::State::cameraAt(QPointF at) const {
   return found;
 }
 
-// By the depth of the picture, drawn once more without what is no surface. A search for the nearest triangle
-// would need a tree over each mesh that passes by.
+// By the depth of the picture, drawn once more with the stand-ins and without what is no surface. A search
+// for the nearest triangle would need a tree over each mesh that passes by.
 std::optional<vec3> SceneView::State::surfaceAt(QPointF at) {
   constexpr int kAround_px = 2;
   if (!vtk->isValid()) return {};
   vtkActor* const lines[] = {actors[static_cast<int>(SceneLayer::Grid)],
                              actors[static_cast<int>(SceneLayer::Cameras)]};
+  moving = true;
+  updateVisibility();
   for (vtkActor* line : lines) line->VisibilityOff();
   for (auto& name : axis_names) name->VisibilityOff();
   overlay->DrawOff();
@@ -97,7 +99,6 @@ std::optional<vec3> SceneView::State::surfaceAt(QPointF at) {
     }
   }
   overlay->DrawOn();
-  updateVisibility();
   return found;
 }
 
@@ -123,7 +124,8 @@ void SceneView::State::doubleClickAt(QPointF at) {
       return;
     }
   }
-  const std::optional<vec3> point = joint >= 0 ? trails.back()[joint] : surfaceAt(at);
+  std::optional<vec3> point = surfaceAt(at);
+  if (!point && joint >= 0) point = trails.back()[joint];
   if (point) {
     leaveCamera();
     orbit.focusOn(*point);

@@ -6,6 +6,7 @@
 #include <vtkActor.h>
 #include <vtkBillboardTextActor3D.h>
 #include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
 
 #include <QTimer>
@@ -27,6 +28,9 @@ struct BuiltLayer {
   PolyData full, coarse;
 };
 
+inline vtkPolyData* geometryOf(vtkActor* actor) {
+  return static_cast<vtkPolyDataMapper*>(actor->GetMapper())->GetInput();
+}
 // "1 camera", "1,234 cameras".
 QString counted(std::size_t count, const QString& thing);
 // Middle and radius of the densest part; also a third of the points far away do not count.
@@ -55,9 +59,9 @@ struct SceneView::State {
   // Camera (scene_input.cpp).
   Camera camera() const;  // pixels: device-independent ones of the picture
   void place();
-  void render();
-  void jump();   // the camera stands elsewhere: the picture of now
-  void moved();  // the camera goes on moving: the next picture is soon enough
+  void render();  // unless nobody can see it
+  void jump();    // the camera stands elsewhere: the picture of now
+  void moved();   // the camera goes on moving: the next picture is soon enough
   void rest();
   void startMoving();
   void handleMouse(const QMouseEvent& mouse);
@@ -83,7 +87,8 @@ struct SceneView::State {
   vtkSmartPointer<vtkRenderer> renderer = vtkSmartPointer<vtkRenderer>::New();
   vtkSmartPointer<vtkRenderer> overlay = vtkSmartPointer<vtkRenderer>::New();  // seen through the skin
   std::array<vtkSmartPointer<vtkActor>, kSceneLayerCount> actors;
-  vtkSmartPointer<vtkActor> coarse_mesh, mark;
+  std::array<vtkSmartPointer<vtkActor>, kSceneLayerCount> coarse;  // without geometry: the layer needs none
+  vtkSmartPointer<vtkActor> mark;
   std::array<vtkSmartPointer<vtkBillboardTextActor3D>, 3> axis_names;
   std::array<bool, kSceneLayerCount> shown{};
   std::array<QString, kSceneLayerCount> counts;

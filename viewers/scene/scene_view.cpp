@@ -40,12 +40,12 @@ vtkSmartPointer<vtkActor> emptyActor() {
 }  // namespace
 
 void SceneView::State::addActors() {
-  for (auto& actor : actors) {
-    actor = emptyActor();
-    (&actor == &actors[static_cast<int>(SceneLayer::Joints)] ? overlay : renderer)->AddActor(actor);
+  for (int i = 0; i < kSceneLayerCount; ++i) {
+    actors[i] = emptyActor();
+    (i == static_cast<int>(SceneLayer::Joints) ? overlay : renderer)->AddActor(actors[i]);
+    coarse[i] = emptyActor();
+    renderer->AddActor(coarse[i]);
   }
-  coarse_mesh = emptyActor();
-  renderer->AddActor(coarse_mesh);
   mark = emptyActor();
   overlay->AddActor(mark);
   const auto actor = [&](SceneLayer layer) { return actors[static_cast<int>(layer)].Get(); };
@@ -56,10 +56,11 @@ void SceneView::State::addActors() {
   mark->GetProperty()->SetLineWidth(3);
   actor(SceneLayer::SeedPoints)->GetProperty()->SetPointSize(3);
   actor(SceneLayer::Joints)->GetProperty()->SetLineWidth(1.6f);
-  for (vtkActor* solid : {actor(SceneLayer::Gaussians), actor(SceneLayer::Mesh), coarse_mesh.Get()}) {
-    solid->GetProperty()->SetAmbient(0.35);
-    solid->GetProperty()->SetDiffuse(0.65);
-    solid->GetProperty()->SetInterpolationToGouraud();
+  for (const SceneLayer solid : {SceneLayer::Gaussians, SceneLayer::Mesh}) {
+    actor(solid)->GetProperty()->SetAmbient(0.35);
+    actor(solid)->GetProperty()->SetDiffuse(0.65);
+    actor(solid)->GetProperty()->SetInterpolationToGouraud();
+    coarse[static_cast<int>(solid)]->SetProperty(actor(solid)->GetProperty());
   }
   const std::array<const char*, 3> names{"X", "Y up", "Z"};
   for (int i = 0; i < 3; ++i) {
@@ -220,17 +221,19 @@ std::optional<ViewIndex> SceneView::lookedThrough() const { return state_->look_
 const OrbitCamera& SceneView::orbit() const { return state_->orbit; }
 
 std::size_t SceneView::drawnTriangles() const {
-  for (vtkActor* actor :
-       {state_->actors[static_cast<int>(SceneLayer::Mesh)].Get(), state_->coarse_mesh.Get()}) {
-    if (actor->GetVisibility())
-      return static_cast<std::size_t>(
-          static_cast<vtkPolyDataMapper*>(actor->GetMapper())->GetInput()->GetNumberOfPolys());
+  std::size_t triangles = 0;
+  for (const auto& actors : {state_->actors, state_->coarse}) {
+    for (vtkActor* actor : actors)
+      if (actor->GetVisibility())
+        triangles += static_cast<std::size_t>(geometryOf(actor)->GetNumberOfPolys());
   }
-  return 0;
+  return triangles;
 }
 
 QImage SceneView::picture() {
-  state_->render();
+  state_->dragging = false;
+  state_->rest();
+  if (!state_->vtk->isVisible()) state_->window->Render();
   return state_->vtk->grab().toImage();
 }
 

@@ -60,7 +60,7 @@ class SceneView final : public QWidget {
 
   // The free camera; that of a capture's camera is put over it by lookThrough().
   const OrbitCamera& orbit() const;
-  // Of the mesh that is drawn now: fewer while the camera moves.
+  // Of mesh and ellipsoids, as they are drawn now: fewer while the camera moves.
   std::size_t drawnTriangles() const;
   // What is shown with the words over it, without the row of buttons.
   QImage picture();

@@ -63,12 +63,12 @@ class Builder {
   vtkSmartPointer<vtkCellArray> triangles_ = vtkSmartPointer<vtkCellArray>::New();
 };
 
-// The unit sphere: an octahedron whose faces are split twice (66 points, 128 triangles).
-Mesh unitSphere() {
+// The unit sphere: an octahedron whose faces are split (twice: 66 points, 128 triangles).
+Mesh unitSphere(int splits) {
   Mesh sphere;
   sphere.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   sphere.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int level = 0; level < 2; ++level) {
+  for (int level = 0; level < splits; ++level) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
       const auto [it, fresh] =
@@ -169,8 +169,8 @@ PolyData meshOf(const Mesh& mesh) {
 }
 
 PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas,
-                      const std::vector<float>& influence) {
-  const Mesh sphere = unitSphere();
+                      const std::vector<float>& influence, int splits) {
+  const Mesh sphere = unitSphere(splits);
   Builder builder;
   for (const std::size_t i : largest(cloud, most)) {
     const u8vec3 color = influence.empty() ? meanColor(cloud, i) : influenceColor(influence[i]);
@@ -186,13 +186,13 @@ PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas
   return builder.build();
 }
 
-PolyData jointsOf(const JointTrails& trails, int picked) {
+PolyData jointsOf(const JointTrails& trails, int picked, bool others) {
   constexpr float kFaint = 0.45f;
   Builder builder;
   if (trails.empty()) return builder.build();
   for (std::size_t j = 0; j < trails.back().size(); ++j) {
     const bool other = picked >= 0 && static_cast<int>(j) != picked;
-    if (static_cast<int>(j) == picked && trails.size() == 1) continue;  // the view draws a ring around it
+    if (other ? !others : picked >= 0 && trails.size() == 1) continue;  // the view draws a ring around it
     const vec3 color = picked < 0 ? jointColor(j) : other ? kFaint * jointColor(j) : vec3(1);
     vtkIdType before = -1;
     for (std::size_t t = other ? trails.size() - 1 : 0; t < trails.size(); ++t) {

@@ -30,15 +30,17 @@ PolyData pointsOf(const PointCloud& cloud);
 PolyData meshOf(const Mesh& mesh);
 
 // The largest `most` Gaussians (by opacity and cross-section) as ellipsoids of `sigmas` standard deviations.
-// `influence`: shares in [0, 1] in false colours instead of their own; empty: none.
+// `influence`: shares in [0, 1] in false colours instead of their own; empty: none. `splits` halves the edges
+// of an octahedron: eight triangles each, four times as many with every split.
 PolyData ellipsoidsOf(const GaussianCloud& cloud, std::size_t most, float sigmas,
-                      const std::vector<float>& influence = {});
+                      const std::vector<float>& influence = {}, int splits = 2);
 
 // Where the joints were: by moment, oldest first, in the same order; the last is shown.
 using JointTrails = std::vector<std::vector<vec3>>;
 // The joints as points and their ways as lines that fade into the past; -1: all of them alike. Otherwise the
-// picked one's way alone is left, and the others are faint points, so that its influence on the skin is seen.
-PolyData jointsOf(const JointTrails& trails, int picked);
+// picked one's way alone is left, so that its influence on the skin is seen, and of the others faint points
+// if `others`.
+PolyData jointsOf(const JointTrails& trails, int picked, bool others = true);
 
 // A floor of `cell_m` cells at y = 0 and the three axes, x red, y green, z blue.
 PolyData gridAndAxes(float extent_m, float cell_m);
