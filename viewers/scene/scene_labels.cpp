@@ -67,9 +67,7 @@ void SceneLabels::paintLookThrough(QPainter& painter) const {
 
 void SceneLabels::paintMarkedName(QPainter& painter) const {
   constexpr int kBeside_px = 8;
-  if (!state_.marked || state_.marked == state_.look_through ||
-      !state_.shown[static_cast<int>(SceneLayer::Cameras)])
-    return;
+  if (!state_.markShown()) return;
   const View& view = state_.capture->views[state_.marked->value];
   const auto at = state_.onScreen(vec3(centerOf(view.camera)));
   if (!at || !rect().contains(at->toPoint())) return;

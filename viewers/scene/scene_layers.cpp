@@ -81,13 +81,20 @@ void SceneView::State::updateFacts() {
   facts->setWords(words.join(" · "));
 }
 
+// From inside a frustum its lines would be a frame around the picture.
+bool SceneView::State::markShown() const {
+  if (!marked || !shown[static_cast<int>(SceneLayer::Cameras)]) return false;
+  const dvec3 away = centerOf(camera()) - centerOf(capture->views[marked->value].camera);
+  return glm::length(away) > frustumLength();
+}
+
 void SceneView::State::updateVisibility() {
   for (int i = 0; i < kSceneLayerCount; ++i) {
     const bool stand_in = moving && geometryOf(coarse[i])->GetNumberOfPolys() > 0;
     actors[i]->SetVisibility(shown[i] && !stand_in);
     coarse[i]->SetVisibility(shown[i] && stand_in);
   }
-  mark->SetVisibility(shown[static_cast<int>(SceneLayer::Cameras)] && marked != look_through);
+  mark->SetVisibility(markShown());
   for (auto& name : axis_names) name->SetVisibility(shown[static_cast<int>(SceneLayer::Grid)]);
 }
 

@@ -53,6 +53,7 @@ struct SceneView::State {
   void buildMark();
   void updateFacts();
   void updateVisibility();
+  bool markShown() const;
   double frustumLength() const { return 0.11 * home.radius_m; }
   bool influenceFits() const { return influence && cloud && influence->size() == cloud->size(); }
 
