@@ -286,6 +286,13 @@ TEST_F(SceneHand, MarksTheCameraWhoseFrustumIsPressedAndTellsOfIt) {
   EXPECT_EQ(picked, std::vector<int>{5}) << "what is hidden cannot be picked";
 }
 
+TEST_F(SceneHand, NamesTheCameraUnderThePointer) {
+  mouse(QEvent::MouseMove, eyeOf(5), Qt::NoButton, Qt::NoButton);
+  EXPECT_TRUE(picture->toolTip().contains("C05")) << picture->toolTip().toStdString();
+  mouse(QEvent::MouseMove, {3, 3}, Qt::NoButton, Qt::NoButton);
+  EXPECT_TRUE(picture->toolTip().isEmpty());
+}
+
 TEST_F(SceneHand, LooksThroughTheCameraThatIsPressedTwiceUntilTheFirstDrag) {
   std::vector<int> activated;
   QObject::connect(&view, &SceneView::cameraActivated, &view,
@@ -321,6 +328,11 @@ TEST_F(SceneHand, ShowsWhichCameraIsMarked) {
   EXPECT_NE(third, without);
   view.markCamera(ViewIndex{4});
   EXPECT_NE(seen(), third);
+  view.setLayerShown(SceneLayer::Cameras, false);
+  const QImage hidden = seen();
+  view.markCamera(ViewIndex{3});
+  EXPECT_EQ(seen(), hidden) << "with the cameras hidden the mark is, too";
+  view.setLayerShown(SceneLayer::Cameras, true);
   view.markCamera(std::nullopt);
   EXPECT_EQ(seen(), without);
   view.markCamera(ViewIndex{99});

@@ -255,7 +255,16 @@ void SceneView::State::handleMouse(const QMouseEvent& mouse) {
   }
 }
 
+void SceneView::State::hover(QPointF at) {
+  const auto view = cameraAt(at);
+  vtk->setCursor(view ? Qt::PointingHandCursor : Qt::ArrowCursor);
+  vtk->setToolTip(view ? QString("Camera %1: press to mark it, twice to look through it")
+                             .arg(QString::fromStdString(capture->views[view->value].name))
+                       : QString());
+}
+
 void SceneView::State::drag(QPointF at, Qt::MouseButtons buttons) {
+  if (buttons == Qt::NoButton) hover(at);
   if (!(buttons & (Qt::LeftButton | Qt::MiddleButton))) return;
   if (!dragging && (at - pressed_at).manhattanLength() < kStill_px) return;
   dragging = true;

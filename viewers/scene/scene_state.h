@@ -67,6 +67,7 @@ struct SceneView::State {
   void startMoving();
   void handleMouse(const QMouseEvent& mouse);
   void drag(QPointF at, Qt::MouseButtons buttons);
+  void hover(QPointF at);
   void leaveCamera();
   void stepCamera(int step);
   Bounds subject() const;
