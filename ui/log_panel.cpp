@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/log_panel.h"
 
+#include <QScrollBar>
+#include <QTextBlock>
 #include <QTime>
+
+#include "ui/theme.h"
 
 namespace beam {
 namespace {
 
 constexpr int kDrain_ms = 100, kMostLines = 5000;
 
-const char* colorOf(LogLevel level) {
+QColor colorOf(LogLevel level) {
   switch (level) {
     case LogLevel::Debug:
-      return "#757b84";
+      return colors().quiet;
     case LogLevel::Info:
-      return "#c3c8cf";
+      break;
     case LogLevel::Warning:
-      return "#e0b35c";
+      return colors().warning;
     case LogLevel::Error:
-      return "#ee8d83";
+      return colors().failed;
   }
-  return "#c3c8cf";
+  return colors().text;
 }
 
 const char* wordOf(LogLevel level) {
@@ -29,9 +33,14 @@ const char* wordOf(LogLevel level) {
 }  // namespace
 
 LogPanel::LogPanel(QWidget* parent) : QPlainTextEdit(parent) {
+  setObjectName("log");
   setReadOnly(true);
+  setTabChangesFocus(true);
   setMaximumBlockCount(kMostLines);
   setPlaceholderText("What happens is written here.");
+  setAccessibleName("Log");
+  connect(verticalScrollBar(), &QScrollBar::actionTriggered, this,
+          [this] { follows_ = verticalScrollBar()->sliderPosition() >= verticalScrollBar()->maximum(); });
   sink_ = addLogSink([this](const LogRecord& record) {
     if (record.level == LogLevel::Debug) return;
     std::lock_guard lock(mutex_);
@@ -45,9 +54,40 @@ LogPanel::LogPanel(QWidget* parent) : QPlainTextEdit(parent) {
 LogPanel::~LogPanel() { removeLogSink(sink_); }
 
 void LogPanel::add(LogLevel level, const QString& text) {
-  appendHtml(QString("<span style='color:#757b84'>%1</span> <span style='color:%2'>%3%4</span>")
-                 .arg(QTime::currentTime().toString("hh:mm:ss"), colorOf(level), wordOf(level),
-                      text.toHtmlEscaped()));
+  const bool again = times_ > 0 && level == last_level_ && text == last_text_;
+  times_ = again ? times_ + 1 : 1;
+  last_level_ = level;
+  last_text_ = text;
+  const int before = verticalScrollBar()->value();
+  if (again) {
+    QTextCursor last(document()->lastBlock());
+    last.movePosition(QTextCursor::EndOfBlock, QTextCursor::KeepAnchor);
+    last.removeSelectedText();
+    last.deletePreviousChar();
+  }
+  QString line = text.toHtmlEscaped().replace('\n', "<br>");
+  if (times_ > 1) line += QString(" <b>×%1</b>").arg(times_);
+  appendHtml(QString("<span style='color:%1'>%2</span> <span style='color:%3'>%4%5</span>")
+                 .arg(colors().quiet.name(), QTime::currentTime().toString("hh:mm:ss"), colorOf(level).name(),
+                      wordOf(level), line));
+  if (follows_) {
+    follow();
+  } else {
+    verticalScrollBar()->setValue(before);
+  }
+}
+
+void LogPanel::follow() { verticalScrollBar()->setValue(verticalScrollBar()->maximum()); }
+
+// A hidden tab has no size to scroll by.
+void LogPanel::showEvent(QShowEvent* event) {
+  QPlainTextEdit::showEvent(event);
+  if (follows_) follow();
+}
+
+void LogPanel::resizeEvent(QResizeEvent* event) {
+  QPlainTextEdit::resizeEvent(event);
+  if (follows_) follow();
 }
 
 void LogPanel::drain() {

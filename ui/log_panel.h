@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log as the console and the file see it, newest at the bottom; warnings and errors stand out.
+// The log as the console and the file see it, newest at the bottom and in view unless a person scrolled up;
+// warnings and errors stand out, and what is told again at once stands once, with how often.
 #pragma once
 
 #include <QPlainTextEdit>
@@ -20,13 +21,22 @@ class LogPanel final : public QPlainTextEdit {
   ~LogPanel() override;
   void add(LogLevel level, const QString& text);
 
+ protected:
+  void showEvent(QShowEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+
  private:
   void drain();
+  void follow();
 
   std::mutex mutex_;
   std::vector<LogRecord> waiting_;  // from any thread
   QTimer timer_;
   int sink_ = 0;
+  LogLevel last_level_ = LogLevel::Debug;
+  QString last_text_;
+  int times_ = 0;        // that the last line was told
+  bool follows_ = true;  // a person who scrolled up reads there
 };
 
 }  // namespace beam

@@ -104,14 +104,7 @@ void MainWindow::makeParts() {
   splat_ = new SplatView(services_.view_device);
   images_ = new ImagePage(model_);
   scene_ = new SceneView;
-  std::vector<StageStatus> stages;
-  for (const StageInfo& info : services_.pipeline->stages.infos()) {
-    stages.push_back({.id = info.id,
-                      .title = QString::fromStdString(info.title),
-                      .summary = QString::fromStdString(info.summary),
-                      .detail = {}});
-  }
-  rail_->setStages(stages);
+  rail_->setStages(stagesWithoutTake(services_.pipeline->stages.infos()));
   rail_->select("surface");
 }
 
@@ -180,7 +173,7 @@ void MainWindow::makeDocks() {
   inspector->tabBar()->setDrawBase(false);
   inspector->addTab(display, "Display");
   inspector->addTab(settings_, "Settings");
-  connect(rail_, &StageRail::selectedChanged, this, [this, inspector](const std::string& stage) {
+  connect(rail_, &StageRail::chosen, this, [this, inspector](const std::string& stage) {
     settings_->setStage(stage);
     inspector->setCurrentWidget(settings_);
   });

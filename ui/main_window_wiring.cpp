@@ -190,7 +190,8 @@ void MainWindow::showOpened() {
   previewing_ = false;
   remember(QString::fromStdString(model_.project().folder().string()));
   centre_->setCurrentIndex(1);
-  run_bar_->setReady(!model_.project().readOnly() || !Project::isProject(model_.project().folder()));
+  const bool can_run = !model_.project().readOnly() || !Project::isProject(model_.project().folder());
+  run_bar_->setRefusal(can_run ? QString() : QString("The project is read-only: look, do not run"));
   run_bar_->showFinished({});
   splat_->setScene({}, {});
   splat_->setCapture(model_.capture(), model_.frame());

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A message over the views: what happened, to which file, what to do. Stays until it is dismissed or
-// replaced.
+// replaced. Long texts scroll: the views keep their room.
 #pragma once
 
 #include <QFrame>
 
 class QLabel;
+class QScrollArea;
+class QToolButton;
 
 namespace beam {
 
@@ -19,9 +21,17 @@ class MessagePanel final : public QFrame {
   QString title() const;
   QString text() const;
 
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
  private:
+  void fitHeight();
+
   QLabel* title_;
   QLabel* text_;
+  QScrollArea* scroll_;
 };
 
 }  // namespace beam

@@ -34,53 +34,6 @@ Project projectOfCapture(const fs::path& capture, const std::shared_ptr<const Pi
   }
 }
 
-StepState stateOf(CellState cell) {
-  switch (cell) {
-    case CellState::Done:
-      return StepState::Done;
-    case CellState::Running:
-      return StepState::Running;
-    case CellState::Failed:
-      return StepState::Failed;
-    case CellState::Blocked:
-      return StepState::Blocked;
-    case CellState::NotNeeded:
-      return StepState::NotNeeded;
-    case CellState::Empty:
-    case CellState::Stale:
-    case CellState::Interpolated:
-      break;
-  }
-  return StepState::Pending;
-}
-
-std::vector<StageStatus> statusOf(const TakeSurvey& survey, const std::vector<StageInfo>& infos,
-                                  FrameIndex shown) {
-  std::vector<StageStatus> all;
-  for (std::size_t i = 0; i < survey.lanes.size(); ++i) {
-    const SurveyLane& lane = survey.lanes[i];
-    const auto count = [&](CellState state) {
-      return static_cast<int>(std::count(lane.cells.begin(), lane.cells.end(), state));
-    };
-    StageStatus status{.id = lane.stage,
-                       .title = QString::fromStdString(lane.title),
-                       .summary = QString::fromStdString(infos[i].summary),
-                       .done = count(CellState::Done),
-                       .frames = static_cast<int>(lane.cells.size()) - count(CellState::NotNeeded),
-                       .detail = QString::fromStdString(lane.blocked_reason)};
-    const auto f = static_cast<std::size_t>(shown.value);
-    if (f < lane.cells.size()) {
-      status.state = stateOf(lane.cells[f]);
-      status.stale = lane.cells[f] == CellState::Stale;
-      if (lane.cells[f] == CellState::Interpolated)
-        status.detail = "interpolated between solved frames of a scout run";
-      if (!lane.notes[f].empty()) status.detail = QString::fromStdString(lane.notes[f]);
-    }
-    all.push_back(std::move(status));
-  }
-  return all;
-}
-
 FrameValues valuesOf(const Project& project, FrameIndex frame) {
   FrameValues values;
   if (std::optional<FrameResult> result = loadShownFrame(project, frame)) {
@@ -298,7 +251,7 @@ void ProjectModel::take(const std::shared_ptr<Surveyed>& result) {
 
 void ProjectModel::showStages() {
   if (!survey_) return;
-  stages_ = statusOf(*survey_, services_.pipeline->stages.infos(), frame_);
+  stages_ = stageStatus(*survey_, services_.pipeline->stages.infos(), frame_);
   Q_EMIT stagesChanged();
 }
 

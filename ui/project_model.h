@@ -9,20 +9,11 @@
 #include "core/pipeline/frame_result.h"
 #include "core/pipeline/take_survey.h"
 #include "ui/frame_cache.h"
+#include "ui/stage_status.h"
 #include "ui/studio_services.h"
 #include "viewers/latest_worker.h"
 
 namespace beam {
-
-// A stage over all frames.
-struct StageStatus {
-  std::string id;
-  QString title, summary;
-  StepState state = StepState::Pending;  // of the current frame
-  int done = 0, frames = 0;              // frames that are done, and those that the stage is for
-  bool stale = false;                    // to do, and there is a result of other settings
-  QString detail;                        // why it is blocked or failed
-};
 
 // A frame without results of its own shows those of the nearest frame that has some.
 struct HeldValues {

@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/project_panel.h"
 
+#include <QApplication>
 #include <QComboBox>
 #include <QFontMetrics>
 #include <QGridLayout>
 #include <QHeaderView>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QLocale>
+#include <QScrollArea>
 #include <QSignalBlocker>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include "ui/elided_label.h"
 #include "ui/evaluation.h"
+#include "ui/theme.h"
+#include "ui/words.h"
 
 namespace beam {
 namespace {
+
+constexpr int kLeastLetters = 6;
 
 QFrame* line() {
   auto* frame = new QFrame;
@@ -23,10 +31,17 @@ QFrame* line() {
   return frame;
 }
 
-QLabel* heading(const QString& text) {
-  auto* label = new QLabel(text);
+ElidedLabel* heading(const QString& text) {
+  auto* label = new ElidedLabel(text);
   label->setObjectName("heading");
+  label->setLeastLetters(kLeastLetters);
   return label;
+}
+
+// Letters and digits belong to the views; what a closed box or a list takes of them is lost to these.
+bool isTyping(const QKeyEvent& key) {
+  const bool plain = !(key.modifiers() & ~(Qt::ShiftModifier | Qt::KeypadModifier));
+  return plain && key.key() != Qt::Key_Space && !key.text().isEmpty() && key.text()[0].isPrint();
 }
 
 }  // namespace
@@ -35,23 +50,43 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
     : QWidget(parent),
       model_(model),
       name_(heading({})),
-      facts_(new QLabel),
       scores_title_(heading("Last evaluation")),
+      facts_(new QLabel),
       frames_(new QComboBox),
       scores_(new QGridLayout),
       cameras_(new QTreeWidget) {
-  setMinimumWidth(260);
   facts_->setObjectName("quiet");
   facts_->setWordWrap(true);
-  frames_->setFocusPolicy(Qt::ClickFocus);
+  frames_->setFocusPolicy(Qt::StrongFocus);
+  frames_->setAccessibleName("Frame");
+  frames_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  frames_->setMinimumContentsLength(kLeastLetters);
+  frames_->installEventFilter(this);
   cameras_->setHeaderHidden(true);
+  cameras_->setColumnCount(2);
+  cameras_->header()->setStretchLastSection(false);
+  cameras_->header()->setMinimumSectionSize(4);
+  cameras_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
+  cameras_->header()->setSectionResizeMode(1, QHeaderView::ResizeToContents);
   cameras_->setRootIsDecorated(true);
   cameras_->setIndentation(14);
-  cameras_->setFocusPolicy(Qt::ClickFocus);
+  cameras_->setFocusPolicy(Qt::StrongFocus);
+  cameras_->setTextElideMode(Qt::ElideRight);
+  cameras_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  cameras_->setExpandsOnDoubleClick(true);
+  cameras_->setAccessibleName("Cameras");
+  cameras_->installEventFilter(this);
+  makeColumn();
+  connectAll();
+  refresh();
+}
+
+void ProjectPanel::makeColumn() {
   auto* frame_row = new QHBoxLayout;
   frame_row->addWidget(new QLabel("Frame"));
   frame_row->addWidget(frames_, 1);
-  auto* column = new QVBoxLayout(this);
+  auto* inside = new QWidget;
+  auto* column = new QVBoxLayout(inside);
   column->setContentsMargins(10, 10, 8, 4);
   column->addWidget(name_);
   column->addWidget(facts_);
@@ -62,18 +97,66 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
   column->addWidget(line());
   column->addWidget(heading("Cameras"));
   column->addWidget(cameras_, 1);
+  auto* scroll = new QScrollArea;
+  scroll->setWidget(inside);
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setFocusPolicy(Qt::NoFocus);
+  auto* all = new QVBoxLayout(this);
+  all->setContentsMargins(0, 0, 0, 0);
+  all->addWidget(scroll);
+  fitRows();
+}
+
+void ProjectPanel::connectAll() {
   connect(frames_, QOverload<int>::of(&QComboBox::activated), this,
           [this](int i) { model_.setFrame(FrameIndex{i}); });
   connect(cameras_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item) {
-    const QVariant index = item->data(0, Qt::UserRole);
-    if (index.isValid()) Q_EMIT cameraActivated(ViewIndex{index.toInt()});
+    if (const std::optional<ViewIndex> view = viewOf(item)) Q_EMIT cameraChosen(*view);
+  });
+  connect(cameras_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
+    // Of a press the click tells.
+    if (QApplication::mouseButtons() != Qt::NoButton) return;
+    if (const std::optional<ViewIndex> view = viewOf(item)) Q_EMIT cameraChosen(*view);
+  });
+  connect(cameras_, &QTreeWidget::itemDoubleClicked, this, [this](QTreeWidgetItem* item) {
+    if (const std::optional<ViewIndex> view = viewOf(item)) Q_EMIT cameraActivated(*view);
   });
   connect(&model_, &ProjectModel::opened, this, &ProjectPanel::refresh);
   connect(&model_, &ProjectModel::frameChanged, this,
           [this] { frames_->setCurrentIndex(model_.frame().value); });
   connect(&model_, &ProjectModel::valuesChanged, this, &ProjectPanel::refreshFacts);
   connect(&model_, &ProjectModel::settingsChanged, this, &ProjectPanel::refreshFacts);
-  refresh();
+}
+
+QSize ProjectPanel::minimumSizeHint() const {
+  return {std::min(220, 24 * fontMetrics().averageCharWidth()), 8 * fontMetrics().height()};
+}
+
+// Some cameras are always to be seen; beyond that the panel scrolls.
+void ProjectPanel::fitRows() { cameras_->setMinimumHeight(6 * (fontMetrics().height() + 8)); }
+
+void ProjectPanel::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) fitRows();
+}
+
+bool ProjectPanel::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() != QEvent::KeyPress) return QWidget::eventFilter(watched, event);
+  const auto& key = static_cast<const QKeyEvent&>(*event);
+  if (watched == cameras_ && (key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter)) {
+    const std::optional<ViewIndex> view = viewOf(cameras_->currentItem());
+    if (view) Q_EMIT cameraActivated(*view);
+    return view.has_value();
+  }
+  if (!isTyping(key)) return QWidget::eventFilter(watched, event);
+  event->ignore();  // goes on to the widget above
+  return true;
+}
+
+std::optional<ViewIndex> ProjectPanel::viewOf(const QTreeWidgetItem* item) const {
+  const QVariant index = item ? item->data(0, Qt::UserRole) : QVariant();
+  return index.isValid() ? std::optional(ViewIndex{index.toInt()}) : std::nullopt;
 }
 
 void ProjectPanel::refresh() {
@@ -83,6 +166,9 @@ void ProjectPanel::refresh() {
     frames_->setCurrentIndex(model_.frame().value);
   }
   frames_->setEnabled(frames_->count() > 1);
+  frames_->setToolTip(frames_->count() == 0   ? "Open a capture or a project first"
+                      : frames_->count() == 1 ? "The capture has this frame alone"
+                                              : "The frame in view");
   refreshFacts();
   fillCameras();
   refreshScores();
@@ -100,22 +186,25 @@ void ProjectPanel::refreshFacts() {
   QStringList lines;
   lines << QString("Capture %1 (%2)")
                .arg(QString::fromStdString(capture.name), QString::fromStdString(project.imported().layout));
-  lines << QString("%1 cameras, %2 frames%3")
-               .arg(capture.views.size())
-               .arg(capture.frames.size())
-               .arg(capture.masks != MaskKind::None ? ", masks" : ", no masks");
+  lines << QString("%1, %2, %3")
+               .arg(countText(static_cast<std::int64_t>(capture.views.size()), "camera"),
+                    countText(static_cast<std::int64_t>(capture.frames.size()), "frame"),
+                    capture.masks != MaskKind::None ? "masks" : "no masks");
   if (const FrameValues& values = model_.values(); values.cloud) {
-    lines << QString("%L1 Gaussians%2")
-                 .arg(values.cloud->size())
-                 .arg(values.materials ? " with materials" : ", no materials yet");
-    if (values.mesh) lines << QString("mesh of %L1 triangles").arg(values.mesh->triangles.size());
+    lines << countText(static_cast<std::int64_t>(values.cloud->size()), "Gaussian") +
+                 (values.materials ? " with materials" : ", no materials yet");
+    if (values.mesh)
+      lines << "mesh of " + countText(static_cast<std::int64_t>(values.mesh->triangles.size()), "triangle");
   }
   if (project.readOnly() && Project::isProject(project.folder()))
     lines << "The project is read-only: look, do not run";
   if (!Project::isProject(project.folder()))
-    lines << "Not on disk yet; the first run makes " + QString::fromStdString(project.folder().string());
+    lines << "Not on disk yet; the first run or Save settings makes " +
+                 QString::fromStdString(project.folder().filename().string());
   facts_->setText(lines.join("\n"));
-  facts_->setToolTip(QString::fromStdString(project.folder().string()));
+  // A name without a space cannot wrap; the tooltip has all of them whole.
+  facts_->setToolTip(lines.join("\n") + "\n" + QString::fromStdString(project.folder().string()));
+  name_->setNote(QString::fromStdString(project.folder().string()));
 }
 
 void ProjectPanel::refreshScores() {
@@ -129,9 +218,12 @@ void ProjectPanel::refreshScores() {
                              : "Last evaluation, " + QLocale::c().toString(evaluation.when, "d MMM hh:mm"));
   int row = 0;
   const auto put = [&](const QString& text, int column, const char* role, Qt::Alignment side) {
-    auto* label = new QLabel(text);
+    auto* label = new ElidedLabel(text);
     label->setObjectName(role);
-    scores_->addWidget(label, row, column, side);
+    label->setAlignment(side | Qt::AlignVCenter);
+    if (column == 0) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+    label->setLeastLetters(column == 0 ? 4 : 7);
+    scores_->addWidget(label, row, column);
   };
   if (!evaluation.rows.empty()) {
     put("SSIM", 2, "quiet", Qt::AlignRight);
@@ -147,12 +239,11 @@ void ProjectPanel::refreshScores() {
   scores_->setVerticalSpacing(3);
   scores_->setHorizontalSpacing(10);
   if (row > 0) return;
-  auto* hint =
-      new QLabel(model_.isOpen() ? "None yet. Score it with:  beam evaluate " +
-                                       QString::fromStdString(model_.project().folder().filename().string())
-                                 : "None yet.");
+  auto* hint = new ElidedLabel("None yet");
   hint->setObjectName("quiet");
-  hint->setWordWrap(true);
+  hint->setNote(model_.isOpen() ? "Scores come from the command line:\nbeam evaluate \"" +
+                                      QString::fromStdString(model_.project().folder().string()) + "\""
+                                : QString("Open a capture or a project first"));
   scores_->addWidget(hint, 0, 0, 1, 3);
 }
 
@@ -174,22 +265,41 @@ void ProjectPanel::fillCameras() {
                            .arg(view.camera.width)
                            .arg(view.camera.height));
       item->setData(0, Qt::UserRole, static_cast<int>(i));
-      item->setToolTip(0, "Look through this camera");
     }
     group->setText(0,
                    QString("%1 (%2)").arg(split == Split::Train ? "Training" : "Test, held out").arg(count));
     group->setHidden(count == 0);
   }
   cameras_->expandAll();
+  showProblems();
+}
+
+void ProjectPanel::setProblems(std::map<std::string, QStringList> problems) {
+  problems_ = std::move(problems);
+  showProblems();
+}
+
+void ProjectPanel::showProblems() {
+  for (QTreeWidgetItemIterator it(cameras_); *it; ++it) {
+    const std::optional<ViewIndex> view = viewOf(*it);
+    if (!view) continue;
+    const auto found = problems_.find(model_.capture()->views[view->value].name);
+    const QStringList texts = found == problems_.end() ? QStringList() : found->second;
+    (*it)->setText(1, texts.isEmpty() ? QString() : QString("▲ %1").arg(texts.size()));
+    (*it)->setForeground(1, colors().warning);
+    QString tip = (*it)->text(0) + "\nClick: choose it · double click or Enter: look through it";
+    if (!texts.isEmpty()) tip += "\n\n" + texts.join("\n");
+    for (const int column : {0, 1}) (*it)->setToolTip(column, tip);
+  }
 }
 
 void ProjectPanel::mark(std::optional<ViewIndex> view) {
+  const QSignalBlocker quiet(cameras_);  // nobody chose
   cameras_->clearSelection();
   if (!view) return;
   for (QTreeWidgetItemIterator it(cameras_); *it; ++it) {
-    const QVariant index = (*it)->data(0, Qt::UserRole);
-    if (!index.isValid() || index.toInt() != view->value) continue;
-    (*it)->setSelected(true);
+    if (viewOf(*it) != view) continue;
+    cameras_->setCurrentItem(*it);
     cameras_->scrollToItem(*it);
   }
 }

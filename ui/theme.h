@@ -1,12 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// The look of the program: Qt's Fusion style under resources/theme/studio.qss. Call it once, before any
-// window.
+// The look of the program: Qt's Fusion style under resources/theme/studio.qss, in colours and text sizes of
+// one place. Call applyTheme before any window; again when the person chooses otherwise.
 #pragma once
 
+#include <QColor>
+
 class QApplication;
+class QFont;
 
 namespace beam {
 
-void applyTheme(QApplication& application);
+enum class Theme { System, Dark, Light };
+
+// Of everything that is drawn by hand, and of the sheet.
+struct Colors {
+  QColor window, chrome, edge, field, inside, card, control, control_edge, hover, hover_edge, chosen;
+  QColor text, strong, muted, quiet, disabled;
+  QColor accent, primary, primary_text, selection;
+  QColor done, failed, warning, stale, running, on_mark;  // `on_mark`: signs on a filled disc or bar
+  QColor lane_empty, lane_done, lane_queued, lane_blocked, lane_interpolated;
+  QColor error_back, error_edge, error_text, notice_back, notice_edge, notice_text;
+};
+
+const Colors& colors();
+
+// `text_scale`: of all text, 1 to 2. System: light where the desktop's windows are.
+void applyTheme(QApplication& application, Theme theme = Theme::Dark, double text_scale = 1);
+
+// The text of notes beside drawings: a little smaller than the widget's.
+QFont smallFont(const QFont& font);
 
 }  // namespace beam

@@ -1,33 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawn part of the timeline: a ruler, a lane a stage, a bar of the frames in memory and a curve. One
-// scale for all of them; press or drag anywhere to go to a frame.
+// scale for all of them; press or drag anywhere to go to a frame. As high as the text asks for.
 #pragma once
 
-#include <QStringList>
 #include <QWidget>
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "core/pipeline/take_survey.h"
+#include "ui/lane_shades.h"
 #include "viewers/playback_clock.h"
 
 namespace beam {
-
-// What the run that is going on has before it; the survey knows only what is on the disk.
-struct RunOverlay {
-  std::vector<int> frames;  // in the run; empty: no run
-  std::string until;        // its last stage; empty: all
-  std::string running_stage;
-  int running_frame = -1;  // -1: a step of the whole project
-  bool active = false;
-};
-
-enum class LaneShade { Empty, Queued, Running, Done, Stale, Failed, Blocked, Interpolated };
-
-// What lane `lane` shows of a frame.
-LaneShade shadeOf(const TakeSurvey& survey, std::size_t lane, int frame, const RunOverlay& run);
 
 class TimelineLanes final : public QWidget {
   Q_OBJECT
@@ -41,31 +26,43 @@ class TimelineLanes final : public QWidget {
   void setMemory(std::vector<bool> held);
   void setMemoryWords(const QString& words);  // told over the bar
   void setRun(RunOverlay run);
-  void setCurve(const QString& name);  // empty: none
+  // Its name in the survey and what it is called; empty: none.
+  void setCurve(const QString& name, const QString& title = {});
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
   // The frame at a position, clamped into the take; -1: there are none. And the middle of its cell.
   int frameAt(double x) const;
   double centerOf(int frame) const;
+  // Where the cells of a lane are drawn, and the curve.
+  QRectF laneBox(int lane) const;
+  QRectF curveBox() const;
 
  Q_SIGNALS:
   void frameWanted(int frame);
+  void heightChanged();  // another height is asked for
 
  protected:
   void paintEvent(QPaintEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
+  void changeEvent(QEvent* event) override;
+  void focusInEvent(QFocusEvent* event) override;
+  void focusOutEvent(QFocusEvent* event) override;
   bool event(QEvent* event) override;
 
  private:
   int frames() const { return survey_ ? static_cast<int>(survey_->frames.size()) : 0; }
+  double namesWidth() const;
+  double rulerHeight() const;
+  double laneHeight() const;
+  double curveHeight() const;
   QRectF cellsBox() const;
-  QRectF laneBox(int lane) const;
   QRectF memoryBox() const;
-  QRectF curveBox() const;
+  void shadeLanes();
+  void askForHeight();
   void paintRuler(QPainter& painter) const;
-  void paintLane(QPainter& painter, int lane) const;
+  void paintStage(QPainter& painter, int lane) const;
   void paintMemory(QPainter& painter) const;
   void paintCurve(QPainter& painter) const;
   void paintMarks(QPainter& painter) const;
@@ -76,7 +73,8 @@ class TimelineLanes final : public QWidget {
   FrameRange range_{0, -1};
   std::vector<bool> held_;
   RunOverlay run_;
-  QString curve_, memory_words_;
+  QString curve_, curve_title_, memory_words_;
+  std::vector<std::vector<LaneShade>> shades_;  // by lane and frame
 };
 
 }  // namespace beam

@@ -1,48 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/timeline_panel.h"
 
+#include <QAbstractItemView>
+#include <QAction>
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QKeyEvent>
-#include <QLabel>
+#include <QMenu>
 #include <QPainter>
+#include <QScrollArea>
+#include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
 
 #include <algorithm>
 
+#include "ui/elided_label.h"
+#include "ui/theme.h"
+#include "ui/words.h"
+
 namespace beam {
 namespace {
 
-QToolButton* button(QHBoxLayout* row, const QString& text, const QString& tip) {
+constexpr int kLeastLetters = 8;      // of the words beside the buttons
+constexpr double kLanesShare = 0.28;  // of the window's height that the lanes may insist on
+constexpr int kCurveLetters = 10;
+
+QToolButton* button(QHBoxLayout* row, const QString& name, const QString& tip) {
   auto* made = new QToolButton;
-  made->setText(text);
+  made->setAccessibleName(name);
   made->setToolTip(tip);
-  made->setFocusPolicy(Qt::NoFocus);
+  made->setFocusPolicy(Qt::TabFocus);  // a click leaves the keys with the view
   row->addWidget(made);
   return made;
 }
 
-// Words that take what room is left; the row never gets wider for them.
-QLabel* quietLabel(QHBoxLayout* row, Qt::Alignment alignment) {
-  auto* label = new QLabel;
-  label->setObjectName("quiet");
-  label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-  label->setAlignment(alignment | Qt::AlignVCenter);
-  row->addWidget(label, 1);
-  return label;
-}
+// Keys go to the transport, not to the scroll bars.
+class LaneScroll final : public QScrollArea {
+ protected:
+  void keyPressEvent(QKeyEvent* event) override { event->ignore(); }
+};
 
 enum class Sign { Play, Pause, Back, Next, First, Last };
 
-// The style's own are dark on dark.
+// The style's own are dark, on dark, too.
 QIcon iconOf(Sign sign) {
   QPixmap picture(32, 32);
   picture.fill(Qt::transparent);
   QPainter p(&picture);
   p.setRenderHint(QPainter::Antialiasing);
   p.setPen(Qt::NoPen);
-  p.setBrush(QColor("#d9dce1"));
+  p.setBrush(colors().text);
   if (sign == Sign::Back || sign == Sign::First) {
     p.translate(32, 0);
     p.scale(-1, 1);
@@ -69,66 +77,94 @@ QIcon iconOf(Sign sign) {
   return QIcon(picture);
 }
 
-// "surface.fit.gaussians" -> "Surface fit: gaussians"
-QString titleOf(const std::string& curve) {
-  QStringList parts = QString::fromStdString(curve).split('.');
-  if (parts.size() < 3) return QString::fromStdString(curve);
-  const QString score = QStringList(parts.mid(2)).join(' ').replace('_', ' ');
-  parts[0][0] = parts[0][0].toUpper();
-  return QString("%1 %2: %3").arg(parts[0], parts[1], score);
-}
-
 }  // namespace
 
 TimelinePanel::TimelinePanel(ProjectModel& model, Player& player, QWidget* parent)
-    : QWidget(parent), model_(model), player_(player), lanes_(new TimelineLanes) {
+    : QWidget(parent), model_(model), player_(player), lanes_(new TimelineLanes), scroll_(new LaneScroll) {
+  scroll_->setWidgetResizable(true);
+  scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll_->setFocusPolicy(Qt::NoFocus);
+  scroll_->setWidget(lanes_);
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  column->addLayout(makeTransport());
+  column->addWidget(scroll_, 1);
+  connectModel();
+  showIcons();
+  showState();
+}
+
+QHBoxLayout* TimelinePanel::makeTransport() {
   auto* row = new QHBoxLayout;
   row->setContentsMargins(8, 4, 8, 2);
   row->setSpacing(4);
   const auto act = [this](QToolButton* b, auto slot) { connect(b, &QToolButton::clicked, this, slot); };
-  auto* to_in = button(row, {}, "To the in point (Home)");
-  to_in->setIcon(iconOf(Sign::First));
-  act(to_in, [this] { player_.goTo(player_.range().first); });
-  auto* back = button(row, {}, "Previous frame (left arrow, or comma)");
-  back->setIcon(iconOf(Sign::Back));
-  act(back, [this] { player_.step(-1); });
-  play_ = button(row, {}, "Play or pause (Space)");
+  to_in_ = button(row, "To the in point", "To the in point (Home)");
+  act(to_in_, [this] { player_.goTo(player_.range().first); });
+  back_ = button(row, "Previous frame", "Previous frame (left arrow, or comma)");
+  act(back_, [this] { player_.step(-1); });
+  play_ = button(row, "Play or pause", "Play or pause (Space)");
   act(play_, [this] { player_.toggle(); });
-  auto* next = button(row, {}, "Next frame (right arrow, or full stop)");
-  next->setIcon(iconOf(Sign::Next));
-  act(next, [this] { player_.step(1); });
-  auto* to_out = button(row, {}, "To the out point (End)");
-  to_out->setIcon(iconOf(Sign::Last));
-  act(to_out, [this] { player_.goTo(player_.range().last); });
-  loop_ = button(row, "Loop", "Play again from the in point (L)");
-  loop_->setCheckable(true);
-  act(loop_, [this] { player_.setLoop(loop_->isChecked()); });
-  act(button(row, "In", "In point here (I)"), [this] { player_.setIn(model_.frame().value); });
-  act(button(row, "Out", "Out point here (O)"), [this] { player_.setOut(model_.frame().value); });
-  whole_ = button(row, "All", "The whole take: in and out points go away");
-  act(whole_, [this] { player_.clearRange(); });
-  where_ = quietLabel(row, Qt::AlignLeft);
-  row->setSpacing(4);
+  next_ = button(row, "Next frame", "Next frame (right arrow, or full stop)");
+  act(next_, [this] { player_.step(1); });
+  to_out_ = button(row, "To the out point", "To the out point (End)");
+  act(to_out_, [this] { player_.goTo(player_.range().last); });
+  makePoints(row);
+  where_ = new ElidedLabel;
+  where_->setObjectName("quiet");
+  where_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  where_->setLeastLetters(kLeastLetters);
+  row->addWidget(where_, 1);
   curves_ = new QComboBox;
-  curves_->setToolTip("The curve below the lanes; press it to go to a frame");
-  curves_->setFocusPolicy(Qt::NoFocus);
-  curves_->setMinimumContentsLength(16);
+  curves_->setAccessibleName("Curve");
+  curves_->setFocusPolicy(Qt::TabFocus);
+  curves_->setMinimumContentsLength(kCurveLetters);
   curves_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   curves_->addItem("no curve", QString());
   row->addWidget(curves_);
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
-  column->addLayout(row);
-  column->addWidget(lanes_);
-  column->addStretch();
+  return row;
+}
 
-  connect(curves_, QOverload<int>::of(&QComboBox::activated), this,
-          [this] { lanes_->setCurve(curves_->currentData().toString()); });
+// In, out and loop: buttons where there is room for them, else entries of the menu at the end.
+void TimelinePanel::makePoints(QHBoxLayout* row) {
+  const auto action = [this](const QString& text, auto slot) {
+    auto* made = new QAction(text, this);
+    connect(made, &QAction::triggered, this, slot);
+    return made;
+  };
+  loop_ = action("Loop", [this] { player_.setLoop(loop_->isChecked()); });
+  loop_->setCheckable(true);
+  in_ = action("In", [this] { player_.setIn(model_.frame().value); });
+  out_ = action("Out", [this] { player_.setOut(model_.frame().value); });
+  whole_ = action("All", [this] { player_.clearRange(); });
+  more_ = new QToolButton;
+  for (QAction* made : {loop_, in_, out_, whole_}) {
+    QToolButton* shown = button(row, made->text(), {});
+    shown->setDefaultAction(made);
+    foldable_.push_back(shown);
+  }
+  more_->setText("…");
+  more_->setAccessibleName("More of the transport");
+  more_->setToolTip("Loop, in and out points");
+  more_->setPopupMode(QToolButton::InstantPopup);
+  more_->setFocusPolicy(Qt::TabFocus);
+  more_->setMenu(new QMenu(more_));
+  more_->menu()->setToolTipsVisible(true);
+  row->addWidget(more_);
+}
+
+void TimelinePanel::connectModel() {
+  connect(curves_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+    showCurve();
+    revealCurve();
+  });
   connect(lanes_, &TimelineLanes::frameWanted, this, [this](int frame) { player_.goTo(frame); });
+  connect(lanes_, &TimelineLanes::heightChanged, this, &TimelinePanel::fitHeight);
   connect(&model_, &ProjectModel::opened, this, [this] {
     survey_ = nullptr;
     lanes_->setSurvey(nullptr);
+    fillCurves();
     showState();
   });
   connect(&model_, &ProjectModel::frameChanged, this, &TimelinePanel::showState);
@@ -141,7 +177,73 @@ TimelinePanel::TimelinePanel(ProjectModel& model, Player& player, QWidget* paren
   connect(&model_, &ProjectModel::memoryChanged, this, &TimelinePanel::showMemory);
   for (const auto signal : {&Player::playingChanged, &Player::rangeChanged, &Player::rateChanged})
     connect(&player_, signal, this, &TimelinePanel::showState);
-  showState();
+}
+
+QSize TimelinePanel::minimumSizeHint() const {
+  // Everything that can fold is folded.
+  int width = 2 * 8 + more_->sizeHint().width() + curves_->minimumSizeHint().width() +
+              where_->minimumSizeHint().width();
+  for (const QToolButton* kept : {to_in_, back_, play_, next_, to_out_}) width += kept->sizeHint().width();
+  return {width + 8 * 4, QWidget::minimumSizeHint().height()};
+}
+
+// From the end of the row; words and curve keep their least room.
+void TimelinePanel::fold() {
+  int room = width() - (minimumSizeHint().width() - more_->sizeHint().width());
+  int all = 0;
+  for (const QToolButton* shown : foldable_) all += shown->sizeHint().width() + 4;
+  const bool folds = all > room;
+  if (folds) room -= more_->sizeHint().width();
+  more_->menu()->clear();
+  for (QToolButton* shown : foldable_) {
+    room -= shown->sizeHint().width() + 4;
+    const bool fits = !folds || room >= 0;
+    shown->setVisible(fits);
+    if (!fits) more_->menu()->addAction(shown->defaultAction());
+  }
+  more_->setVisible(folds);
+}
+
+// The lanes insist on their height up to a share of the window; where that is low they scroll.
+void TimelinePanel::fitHeight() {
+  const int most = static_cast<int>(kLanesShare * window()->height());
+  const int wanted = std::min(lanes_->sizeHint().height(), most);
+  if (scroll_->minimumHeight() == wanted) return;
+  scroll_->setMinimumHeight(wanted);
+}
+
+void TimelinePanel::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  fold();
+}
+
+void TimelinePanel::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  window()->installEventFilter(this);
+  fitHeight();
+}
+
+void TimelinePanel::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() != QEvent::FontChange && event->type() != QEvent::StyleChange) return;
+  if (!more_) return;  // the base asks while it is being made
+  showIcons();
+  fold();
+}
+
+bool TimelinePanel::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == window() && event->type() == QEvent::Resize) fitHeight();
+  return QWidget::eventFilter(watched, event);
+}
+
+void TimelinePanel::showIcons() {
+  to_in_->setIcon(iconOf(Sign::First));
+  back_->setIcon(iconOf(Sign::Back));
+  play_->setIcon(iconOf(player_.playing() ? Sign::Pause : Sign::Play));
+  next_->setIcon(iconOf(Sign::Next));
+  to_out_->setIcon(iconOf(Sign::Last));
+  const int side = fontMetrics().height();
+  for (QToolButton* with_icon : {to_in_, back_, play_, next_, to_out_}) with_icon->setIconSize({side, side});
 }
 
 bool TimelinePanel::handleKey(const QKeyEvent& event) {
@@ -183,8 +285,26 @@ bool TimelinePanel::chooseCurve(const QString& name) {
   const int i = curves_->findData(name);
   if (i < 0) return false;
   curves_->setCurrentIndex(i);
-  lanes_->setCurve(name);
+  showCurve();
+  revealCurve();
   return true;
+}
+
+void TimelinePanel::showCurve() {
+  const bool any = curves_->currentIndex() > 0;
+  lanes_->setCurve(curves_->currentData().toString(), any ? curves_->currentText() : QString());
+  curves_->setToolTip(curves_->count() < 2 ? "There are no curves yet: they come with the first result"
+                      : any                ? curves_->currentText() + "\nPress the curve to go to a frame"
+                                           : "The curve below the lanes; press it to go to a frame");
+}
+
+// What was asked for is in view, once the lanes have their new height.
+void TimelinePanel::revealCurve() {
+  if (curves_->currentIndex() < 1) return;
+  QTimer::singleShot(0, this, [this] {
+    const QRect box = lanes_->curveBox().toAlignedRect();
+    if (isVisible()) scroll_->ensureVisible(box.left(), box.bottom(), 0, 0);
+  });
 }
 
 void TimelinePanel::setPictureNote(const QString& note) {
@@ -200,11 +320,14 @@ void TimelinePanel::fillCurves() {
   curves_->clear();
   curves_->addItem("no curve", QString());
   if (model_.survey()) {
+    const std::vector<StageInfo>& stages = model_.services().pipeline->stages.infos();
     for (const SurveyCurve& curve : model_.survey()->curves)
-      curves_->addItem(titleOf(curve.name), QString::fromStdString(curve.name));
+      curves_->addItem(curveTitle(stages, curve.name), QString::fromStdString(curve.name));
   }
+  curves_->setEnabled(curves_->count() > 1);
   curves_->setCurrentIndex(std::max(0, curves_->findData(chosen)));
-  lanes_->setCurve(curves_->currentData().toString());
+  curves_->view()->setMinimumWidth(curves_->view()->sizeHintForColumn(0) + 24);
+  showCurve();
 }
 
 void TimelinePanel::showState() {
@@ -212,25 +335,39 @@ void TimelinePanel::showState() {
   const bool open = model_.isOpen() && range.size() > 0;
   lanes_->setFrame(model_.frame().value);
   lanes_->setRange(range);
+  const QString closed = "Open a capture or a project first";
+  const auto allow = [&](auto* control, bool can, const QString& tip, const QString& why) {
+    control->setEnabled(can);
+    control->setToolTip(can ? tip : open ? why : closed);
+  };
+  allow(to_in_, open, "To the in point (Home)", {});
+  allow(back_, open, "Previous frame (left arrow, or comma)", {});
+  allow(play_, open && range.size() > 1, "Play or pause (Space)", "A single frame cannot be played");
+  allow(next_, open, "Next frame (right arrow, or full stop)", {});
+  allow(to_out_, open, "To the out point (End)", {});
+  allow(loop_, open, "Play again from the in point (L)", {});
+  allow(in_, open, "In point here (I)", {});
+  allow(out_, open, "Out point here (O)", {});
+  allow(whole_, open && !player_.clock().wholeTake(), "The whole take: in and out points go away",
+        "There are no in and out points: this is the whole take");
   loop_->setChecked(player_.clock().loop());
-  whole_->setEnabled(open && !player_.clock().wholeTake());
   play_->setIcon(iconOf(player_.playing() ? Sign::Pause : Sign::Play));
   if (!open) return where_->setText({});
   QStringList words{player_.rateText()};
   if (!note_.isEmpty()) words << note_;
   if (!player_.clock().wholeTake())
-    words << QString("%1 of %2 frames").arg(range.size()).arg(player_.clock().frames());
-  if (player_.clock().dropped() > 0) words << QString("%1 left out").arg(player_.clock().dropped());
-  where_->setText("  " + words.join(" · "));
-  where_->setToolTip(where_->text());
+    words << QString("%1 of %2").arg(numberText(range.size()), countText(player_.clock().frames(), "frame"));
+  if (player_.clock().dropped() > 0) words << numberText(player_.clock().dropped()) + " dropped";
+  where_->setText(words.join(" · "));
+  where_->setNote("Pictures a second; dropped: frames that were passed over to keep up");
 }
 
 void TimelinePanel::showMemory() {
   const std::size_t frames = model_.capture() ? model_.capture()->frames.size() : 0;
   const std::vector<bool> held = model_.cache().held(frames);
   lanes_->setMemory(held);
-  lanes_->setMemoryWords(QString("%1 frames in memory, %2 of %3 MB")
-                             .arg(std::count(held.begin(), held.end(), true))
+  lanes_->setMemoryWords(QString("%1 in memory, %2 of %3 MB")
+                             .arg(countText(std::count(held.begin(), held.end(), true), "frame"))
                              .arg(1e-6 * static_cast<double>(model_.cache().bytes()), 0, 'f', 0)
                              .arg(1e-6 * static_cast<double>(model_.cache().budget()), 0, 'f', 0));
 }

@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The timeline: transport, in and out points, the rate that is reached, memory, and the lanes below.
+// The timeline: transport, in and out points, the rate that is reached, memory, and the lanes below, which
+// scroll where the dock is lower than they are. What of the row does not fit folds into a menu.
 #pragma once
 
 #include <QWidget>
 
+#include <vector>
+
 #include "ui/player.h"
 #include "ui/timeline_lanes.h"
 
+class QAction;
 class QComboBox;
+class QHBoxLayout;
 class QKeyEvent;
-class QLabel;
+class QScrollArea;
 class QToolButton;
 
 namespace beam {
+
+class ElidedLabel;
 
 class TimelinePanel final : public QWidget {
   Q_OBJECT
@@ -29,18 +36,37 @@ class TimelinePanel final : public QWidget {
   void setPictureNote(const QString& note);
   TimelineLanes& lanes() { return *lanes_; }
   QString text() const;  // what is said beside the buttons
+  QSize minimumSizeHint() const override;
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+  void changeEvent(QEvent* event) override;
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
+  QHBoxLayout* makeTransport();
+  void makePoints(QHBoxLayout* row);
+  void connectModel();
+  void fold();
+  void fitHeight();
+  void showIcons();
   void fillCurves();
+  void showCurve();
+  void revealCurve();
   void showState();
   void showMemory();
 
   ProjectModel& model_;
   Player& player_;
   TimelineLanes* lanes_;
-  QToolButton *play_, *loop_, *whole_;
-  QLabel* where_;
-  QComboBox* curves_;
+  QScrollArea* scroll_ = nullptr;
+  QToolButton *to_in_ = nullptr, *back_ = nullptr, *play_ = nullptr, *next_ = nullptr, *to_out_ = nullptr;
+  QAction *loop_ = nullptr, *in_ = nullptr, *out_ = nullptr, *whole_ = nullptr;
+  std::vector<QToolButton*> foldable_;  // the first is the last to go
+  QToolButton* more_ = nullptr;         // what is folded away
+  ElidedLabel* where_ = nullptr;
+  QComboBox* curves_ = nullptr;
   QString note_;
   std::shared_ptr<const TakeSurvey> survey_;  // what the lanes show
 };

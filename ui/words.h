@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers, counts and names of things as the window writes them: one way for all its parts, whatever the
+// locale.
+#pragma once
+
+#include <QString>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/pipeline/stage_registry.h"
+
+namespace beam {
+
+// 1,234,567.
+QString numberText(std::int64_t n);
+// "1 frame", "1,200 frames". `one`: the singular; `many`: where an s at its end will not do.
+QString countText(std::int64_t n, const QString& one, const QString& many = {});
+
+// "35 s", "4 min 10 s", "1 h 05 min".
+QString durationText(double seconds);
+
+// "surface.fit" -> "Surface: fit appearance". An id that no stage has stays as it is.
+QString stepTitle(const std::vector<StageInfo>& stages, const std::string& step);
+// "surface.fit.seconds" -> "Surface, fit appearance: time (s)"; the score's unit by the end of its name.
+QString curveTitle(const std::vector<StageInfo>& stages, const std::string& curve);
+
+}  // namespace beam
