@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/field_text.h"
 
 namespace beam {
 namespace {
@@ -18,8 +19,19 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-[[noreturn]] void wrongType(const FieldInfo& info, std::string_view expected, const FieldValue& found) {
-  throw Error(Error::Kind::Usage, fmt::format("{} expects {}, found {}", info.name, expected, toText(found)));
+[[noreturn]] void refuse(const FieldInfo& info, const FieldValue& like, const std::string& found) {
+  throw Error(Error::Kind::Usage,
+              fmt::format("{} expects {}, found {}", info.name, expectedText(info, like), found));
+}
+
+// 1,000,000 and 0.00005: no powers of ten.
+std::string plainNumber(double v) {
+  std::string text = fmt::format("{:.12f}", v);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  const std::size_t first = v < 0 ? 1 : 0;
+  for (std::size_t at = std::min(text.find('.'), text.size()); at > first + 3;) text.insert(at -= 3, 1, ',');
+  return text;
 }
 
 int asInt(const FieldInfo& info, const FieldValue& value) {
@@ -28,13 +40,13 @@ int asInt(const FieldInfo& info, const FieldValue& value) {
       d && *d == std::floor(*d) && std::abs(*d) < 2147483647.0) {
     return static_cast<int>(*d);
   }
-  wrongType(info, "a whole number", value);
+  refuse(info, FieldValue(0), toText(value));
 }
 
 double asDouble(const FieldInfo& info, const FieldValue& value) {
   if (const double* d = std::get_if<double>(&value)) return *d;
   if (const int* i = std::get_if<int>(&value)) return *i;
-  wrongType(info, "a number", value);
+  refuse(info, FieldValue(0.0), toText(value));
 }
 
 }  // namespace
@@ -48,7 +60,7 @@ void FieldSetter::visit(const FieldInfo& info, FieldPointer target) {
   found = true;
   std::visit(Overloaded{[&](bool* p) {
                           const bool* b = std::get_if<bool>(&value_);
-                          if (!b) wrongType(info, "true or false", value_);
+                          if (!b) refuse(info, FieldValue(false), toText(value_));
                           *p = *b;
                         },
                         [&](int* p) {
@@ -63,27 +75,41 @@ void FieldSetter::visit(const FieldInfo& info, FieldPointer target) {
                         },
                         [&](std::string* p) {
                           const std::string* s = std::get_if<std::string>(&value_);
-                          if (!s) wrongType(info, "text", value_);
+                          if (!s) refuse(info, FieldValue(std::string()), toText(value_));
                           checkRange(info, *s);
                           *p = *s;
                         }},
              target);
 }
 
+std::string rangeText(const FieldInfo& info) {
+  const bool low = std::isfinite(info.min), high = std::isfinite(info.max);
+  std::string text;
+  if (low && high) text = fmt::format("{} to {}", plainNumber(info.min), plainNumber(info.max));
+  if (low && !high) text = fmt::format("at least {}", plainNumber(info.min));
+  if (high && !low) text = fmt::format("at most {}", plainNumber(info.max));
+  return text.empty() || info.unit.empty() ? text : fmt::format("{} {}", text, info.unit);
+}
+
+std::string expectedText(const FieldInfo& info, const FieldValue& like) {
+  if (std::holds_alternative<bool>(like)) return "true or false";
+  if (std::holds_alternative<std::string>(like))
+    return info.choices.empty() ? "text" : fmt::format("one of {}", fmt::join(info.choices, ", "));
+  const std::string kind = std::holds_alternative<int>(like) ? "a whole number" : "a number";
+  const std::string range = rangeText(info);
+  if (range.empty()) return kind;
+  return fmt::format("{} {} {}", kind, range.starts_with("at ") ? "of" : "from", range);
+}
+
 void checkRange(const FieldInfo& info, const FieldValue& value) {
   const auto number = [&](double v) {
-    if (std::isfinite(v) && v >= info.min && v <= info.max) return;
-    throw Error(Error::Kind::Usage, fmt::format("{} expects {} to {}{}{}, found {}", info.name, info.min,
-                                                info.max, info.unit.empty() ? "" : " ", info.unit, v));
+    if (!std::isfinite(v) || v < info.min || v > info.max) refuse(info, value, toText(value));
   };
   std::visit(Overloaded{[](bool) {}, [&](int v) { number(v); }, [&](double v) { number(v); },
                         [&](const std::string& s) {
                           if (info.choices.empty()) return;
-                          if (std::find(info.choices.begin(), info.choices.end(), s) != info.choices.end())
-                            return;
-                          throw Error(Error::Kind::Usage,
-                                      fmt::format("{} expects one of {}, found \"{}\"", info.name,
-                                                  fmt::join(info.choices, ", "), s));
+                          if (std::find(info.choices.begin(), info.choices.end(), s) == info.choices.end())
+                            refuse(info, value, fmt::format("\"{}\"", s));
                         }},
              value);
 }

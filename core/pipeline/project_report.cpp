@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/field_text.h"
+
 namespace beam {
 namespace {
 
@@ -35,10 +37,10 @@ Json toJsonValue(const Field& field) {
   return j;
 }
 
-std::string rangeText(const FieldInfo& info) {
+std::string limitsText(const FieldInfo& info) {
   if (!info.choices.empty()) return fmt::format(" ({})", fmt::join(info.choices, ", "));
-  if (!std::isfinite(info.min) || !std::isfinite(info.max)) return {};
-  return fmt::format(" ({} to {}{}{})", info.min, info.max, info.unit.empty() ? "" : " ", info.unit);
+  const std::string range = rangeText(info);
+  return range.empty() ? range : fmt::format(" ({})", range);
 }
 
 std::vector<FrameIndex> framesOf(const Project& project, const StepInfo& step) {
@@ -213,7 +215,7 @@ std::string stagesText(const StageRegistry& stages) {
                           step.source.empty() ? "" : " (" + step.source + ")");
     }
     for (const Field& field : defaultsOf(stages, info)) {
-      text += fmt::format("  {} = {}{}: {}\n", field.info.name, toText(field.value), rangeText(field.info),
+      text += fmt::format("  {} = {}{}: {}\n", field.info.name, toText(field.value), limitsText(field.info),
                           field.info.help);
     }
   }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
+#include "core/base/field_text.h"
 #include "core/base/fields_json.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
@@ -58,6 +59,27 @@ TEST(Fields, TakeValuesByNameAndKeepThemInRange) {
     EXPECT_THROW(set(o, name, text), Error) << name << " " << text;
   }
   EXPECT_EQ(o.steps, 7);
+}
+
+TEST(Fields, SayInWordsWhatTheyTake) {
+  EXPECT_EQ(rangeText({.name = "n", .label = "", .help = "", .min = 2, .max = 1e6}), "2 to 1,000,000");
+  EXPECT_EQ(rangeText({.name = "n", .label = "", .help = "", .min = 5e-4, .max = 0.1, .unit = "m"}),
+            "0.0005 to 0.1 m");
+  EXPECT_EQ(rangeText({.name = "n", .label = "", .help = "", .min = 1}), "at least 1");
+  EXPECT_EQ(rangeText({.name = "n", .label = "", .help = "", .max = -1234.5}), "at most -1,234.5");
+  EXPECT_EQ(rangeText({.name = "n", .label = "", .help = ""}), "");
+  EXPECT_EQ(expectedText({.name = "n", .label = "", .help = "", .min = 2, .max = 1e6}, 7),
+            "a whole number from 2 to 1,000,000");
+  EXPECT_EQ(expectedText({.name = "n", .label = "", .help = "", .min = 1}, 0.5), "a number of at least 1");
+  EXPECT_EQ(expectedText({.name = "n", .label = "", .help = "", .choices = {"a", "b"}}, std::string("a")),
+            "one of a, b");
+  Options o;
+  try {
+    set(o, "steps", "1000");
+    FAIL() << "1000 steps were taken";
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "steps expects a whole number from 1 to 100, found 1000");
+  }
 }
 
 TEST(Fields, TheNearestNameIsFoundForATypingError) {
