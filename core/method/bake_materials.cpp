@@ -136,37 +136,38 @@ Planes weightsByLight(const std::vector<WeightedPixel>& pixels, float usual, con
 void describe(Fields& f, BakeMaterialsOptions& o) {
   f.field({.name = "ao_samples",
            .label = "Occlusion rays",
-           .help = "Rays a pixel for ambient occlusion; the paper takes 50 (eq. 3).",
+           .help = "Rays per pixel that measure ambient occlusion; the paper takes 50.",
            .min = 1,
-           .max = 4096},
+           .max = 4096,
+           .unit = "rays"},
           o.ao_samples);
   f.field({.name = "base_color_samples",
            .label = "Light rays",
-           .help = "Rays a pixel for the light that falls in; the paper takes 100 (eq. 20).",
+           .help = "Rays per pixel that gather the light that falls in; the paper takes 100.",
            .min = 5,
-           .max = 4096},
+           .max = 4096,
+           .unit = "rays"},
           o.base_color_samples);
-  f.field(
-      {.name = "offset_m",
-       .label = "Ray offset",
-       .help =
-           "How far rays start off the surface; the paper takes 0.02 m (3.2). Too little darkens, too much "
-           "brightens creases.",
-       .min = 0,
-       .max = 0.5,
-       .unit = "m"},
-      o.offset_m);
+  f.field({.name = "offset_m",
+           .label = "Ray offset",
+           .help = "How far off the surface rays start; the paper takes 0.02 m. Too little darkens, too much "
+                   "brightens creases.",
+           .min = 0,
+           .max = 0.5,
+           .unit = "m"},
+          o.offset_m);
   f.field({.name = "threshold",
            .label = "Occlusion threshold",
-           .help = "A ray is blocked when the alphas along it sum to more; the paper takes 0.9999 (eq. 7).",
+           .help = "A ray is blocked where the opacities along it sum to more; the paper takes 0.9999.",
            .min = 0.01,
            .max = 10,
            .advanced = true},
           o.threshold);
   f.field(
       {.name = "denoise_levels",
-       .label = "Denoise levels",
-       .help = "Passes of the edge-aware filter over the integrals, each twice as wide; 0 switches it off.",
+       .label = "Denoising passes",
+       .help =
+           "Passes of a filter that keeps edges, each twice as wide as the one before; 0 switches it off.",
        .min = 0,
        .max = 7,
        .advanced = true},
@@ -175,15 +176,18 @@ void describe(Fields& f, BakeMaterialsOptions& o) {
            .label = "Correct for one bounce",
            .help = "Takes light that bounces inside creases out of the base colour; the paper ignores it."},
           o.multibounce);
-  f.field({.name = "roughness",
-           .label = "Roughness",
-           .help = "The stated prior: one number for the whole subject. Cotton 0.8, skin 0.5, leather 0.4.",
-           .min = 0.04,
-           .max = 1},
-          o.roughness);
+  f.field(
+      {.name = "roughness",
+       .label = "Roughness",
+       .help =
+           "One number for the whole subject: it is stated, not measured. Cotton 0.8, skin 0.5, leather 0.4.",
+       .min = 0.04,
+       .max = 1},
+      o.roughness);
   f.field({.name = "seed",
-           .label = "Seed",
-           .help = "Of the random numbers.",
+           .label = "Random seed",
+           .help = "Start of the random numbers: the same number gives the same result again, another one a "
+                   "slightly different result.",
            .min = 0,
            .max = 1e9,
            .advanced = true},

@@ -38,15 +38,15 @@ DepthView depthView(const RasterImages& r, const Camera& camera) {
 
 void describe(Fields& f, ExtractMeshOptions& o) {
   f.field({.name = "voxel_m",
-           .label = "Voxel",
-           .help = "Size of the distance field's cells; 2 to 3 mm for a person.",
+           .label = "Voxel size",
+           .help = "Size of the cells that depth is fused in; 0.002 to 0.003 m for a person.",
            .min = 0.0005,
            .max = 0.1,
            .unit = "m"},
           o.voxel_m);
   f.field({.name = "truncation_voxels",
-           .label = "Truncation",
-           .help = "Reach of the signed distance to either side.",
+           .label = "Truncation distance",
+           .help = "How far the fused distance reaches to either side of the surface.",
            .min = 1,
            .max = 20,
            .unit = "voxels",

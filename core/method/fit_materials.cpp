@@ -109,72 +109,74 @@ Materials turnedTo(const GaussianCloud& cloud, const EarlierFrame& before) {
 }  // namespace
 
 void describe(Fields& f, FitMaterialsOptions& o) {
-  f.field(
-      {.name = "solver",
-       .label = "Solver",
-       .help = "\"adam\" is the paper's descent on L1 + D-SSIM; \"linear\" solves weighted least squares.",
-       .choices = {"adam", "linear"}},
-      o.solver);
+  f.field({.name = "solver",
+           .label = "Solver",
+           .help = "\"linear\" solves weighted least squares; \"adam\" is the gradient descent of the paper "
+                   "on absolute and structural difference (L1 + D-SSIM).",
+           .choices = {"adam", "linear"}},
+          o.solver);
   f.field({.name = "adam_iterations",
            .label = "Adam iterations",
-           .help = "Steps for each of base colour and occlusion; the paper takes 5000 (3.2).",
+           .help = "Adam: steps for each of base colour and occlusion; the paper takes 5,000.",
            .min = 1,
            .max = 1e6},
           o.adam_iterations);
   f.field({.name = "linear_iterations",
            .label = "Linear iterations",
-           .help = "Steps of conjugate gradients.",
+           .help = "Linear solver: steps of conjugate gradients.",
            .min = 0,
            .max = 1000},
           o.linear_iterations);
-  f.field({.name = "regularization",
-           .label = "Regularization",
-           .help = "Pull of the view-dependent coefficients towards 0; raise it when new views show spots.",
-           .min = 0,
-           .max = 100,
-           .advanced = true},
-          o.regularization);
+  f.field(
+      {.name = "regularization",
+       .label = "Pull on view-dependence",
+       .help =
+           "How strongly what depends on the view is pulled towards 0; raise it when new views show spots.",
+       .min = 0,
+       .max = 100,
+       .advanced = true},
+      o.regularization);
 }
 
 void describe(Fields& f, LaterMaterialsOptions& o) {
   f.field(
       {.name = "memory_frames",
-       .label = "Memory",
+       .label = "Memory of base colour",
        .help =
-           "Linear solver: as how many frames' pictures the base colour of the frame before counts; raise "
-           "it when base colour flickers, 0 (and 0 for occlusion): every frame by itself.",
+           "Linear solver: the base colour of the frame before counts as much as the pictures of this many "
+           "frames. Raise it when base colour flickers; 0 here and for occlusion: every frame by itself.",
        .min = 0,
        .max = 100,
        .unit = "frames"},
       o.memory_frames);
-  f.field(
-      {.name = "occlusion_memory_frames",
-       .label = "Occlusion memory",
-       .help = "Linear solver: the same of ambient occlusion, which changes with the pose; too much makes it "
-               "lag.",
-       .min = 0,
-       .max = 100,
-       .unit = "frames",
-       .advanced = true},
-      o.occlusion_memory_frames);
+  f.field({.name = "occlusion_memory_frames",
+           .label = "Memory of occlusion",
+           .help = "Linear solver: ambient occlusion of the frame before counts as much as the pictures of "
+                   "this many frames. It changes with the pose: too much makes it lag.",
+           .min = 0,
+           .max = 100,
+           .unit = "frames",
+           .advanced = true},
+          o.occlusion_memory_frames);
   f.field({.name = "outlier",
-           .label = "Outlier",
-           .help = "Linear solver: memory fades where the pictures contradict it by more than this (1: black "
-                   "against white).",
+           .label = "Difference that ends memory",
+           .help = "Linear solver: where the pictures contradict the frame before by more than this, it "
+                   "counts less; 1 is black against white.",
            .min = 0.001,
            .max = 100,
            .advanced = true},
           o.outlier);
   f.field({.name = "temporal_weight",
-           .label = "Temporal weight",
-           .help = "Adam: pull of base colour towards the frame before; the paper takes 5e-5 (eq. 10).",
+           .label = "Hold to the frame before",
+           .help = "Adam: how strongly base colour is pulled towards that of the frame before; the paper "
+                   "takes 0.00005.",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.temporal_weight);
   f.field({.name = "adam_iterations",
            .label = "Adam iterations, later frames",
-           .help = "Steps of a frame that starts from the frame before.",
+           .help = "Adam: steps of a frame that starts from the frame before.",
            .min = 1,
            .max = 1e6,
            .advanced = true},

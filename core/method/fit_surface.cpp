@@ -171,111 +171,120 @@ namespace {
 
 void describeAdvanced(Fields& f, FitSurfaceOptions& o) {
   f.field({.name = "seed",
-           .label = "Seed",
-           .help = "Of all random numbers.",
+           .label = "Random seed",
+           .help = "Start of the random numbers: the same number gives the same result again, another one a "
+                   "slightly different result.",
            .min = 0,
            .max = 1e9,
            .advanced = true},
           o.seed);
   f.field({.name = "seed_share",
-           .label = "Seeds",
-           .help = "Seed points as a share of the cap; growth adds the rest.",
+           .label = "Share of starting points",
+           .help = "Points on the hull of the masks that the fit starts from, as a share of the most "
+                   "Gaussians; growth adds the rest.",
            .min = 0.01,
            .max = 1,
            .advanced = true},
           o.seed_share);
   f.field({.name = "ssim_weight",
-           .label = "D-SSIM share",
-           .help = "lambda of the colour loss (eq. 8: 0.2).",
+           .label = "Share of structure in the loss",
+           .help = "Part of structural dissimilarity (D-SSIM) in the difference to the photographs; the rest "
+                   "is absolute difference (L1). The paper takes 0.2.",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.ssim_weight);
   f.field({.name = "mask_weight",
            .label = "Mask weight",
-           .help = "Pull of the coverage towards the mask; 0 is off.",
+           .help = "How strongly the covered area is pulled towards the mask; 0 switches it off.",
            .min = 0,
            .max = 10,
            .advanced = true},
           o.mask_weight);
   f.field({.name = "filter",
-           .label = "3D filter",
-           .help = "Smallest Gaussian as a share of Mip-Splatting's filter.",
+           .label = "Smallest size (3D filter)",
+           .help = "Smallest size of a Gaussian, as a share of what Mip-Splatting sets by the resolution of "
+                   "the cameras; 0 switches it off.",
            .min = 0,
            .max = 4,
            .advanced = true},
           o.filter);
   f.field({.name = "position_rate",
-           .label = "Position rate",
-           .help = "First learning rate of positions, times the scene extent; falls to a hundredth.",
+           .label = "Learning rate, position",
+           .help = "Learning rate of positions at the first step, as a share of the extent of the scene; "
+                   "falls to a hundredth.",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.position_rate);
   f.field({.name = "scale_rate",
-           .label = "Scale rate",
-           .help = "Learning rate of log scales.",
+           .label = "Learning rate, size",
+           .help = "Learning rate of the logarithms of the sizes.",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.scale_rate);
   f.field({.name = "opacity_rate",
-           .label = "Opacity rate",
-           .help = "Learning rate of opacity logits.",
+           .label = "Learning rate, opacity",
+           .help = "Learning rate of the opacities before their sigmoid (logits).",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.opacity_rate);
   f.field({.name = "color_rate",
-           .label = "Colour rate",
-           .help = "Learning rate of the first SH band; others a 20th.",
+           .label = "Learning rate, colour",
+           .help = "Learning rate of the colour that is the same from every side; what depends on the view "
+                   "learns a 20th as fast.",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.color_rate);
   f.field({.name = "noise",
            .label = "Exploration noise",
-           .help = "MCMC's noise, times the position rate.",
+           .help = "Random moves that spread Gaussians to where some are missing (MCMC), as a multiple of "
+                   "the learning rate of positions.",
            .min = 0,
            .max = 1e8,
            .advanced = true},
           o.noise);
   f.field({.name = "opacity_regularizer",
-           .label = "Opacity regulariser",
-           .help = "Of MCMC, on the mean opacity.",
+           .label = "Pull on opacity",
+           .help = "Pull of the mean opacity towards 0, so that Gaussians that show nothing become free to "
+                   "be used elsewhere (MCMC).",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.opacity_regularizer);
-  f.field({.name = "scale_regularizer",
-           .label = "Scale regulariser",
-           .help = "Of MCMC, on the mean scale.",
-           .min = 0,
-           .max = 1,
-           .advanced = true},
-          o.scale_regularizer);
+  f.field(
+      {.name = "scale_regularizer",
+       .label = "Pull on size",
+       .help = "Pull of the mean size towards 0, so that no Gaussian stays larger than it has to be (MCMC).",
+       .min = 0,
+       .max = 1,
+       .advanced = true},
+      o.scale_regularizer);
 }
 
 }  // namespace
 
 void describe(Fields& f, FitSurfaceOptions& o) {
-  f.field(
-      {.name = "iterations",
-       .label = "Iterations",
-       .help =
-           "Optimiser steps of a frame in all; the paper's schedule takes 15,000 + 15,000 for a lone frame.",
-       .min = 10,
-       .max = 1e6},
-      o.iterations);
+  f.field({.name = "iterations",
+           .label = "Iterations",
+           .help = "Optimiser steps of a frame that is fitted alone or begins a take, in all; the paper "
+                   "takes 15,000 + 15,000 for a lone frame.",
+           .min = 10,
+           .max = 1e6},
+          o.iterations);
   f.field({.name = "refine_fraction",
-           .label = "Share with normals",
-           .help = "Share of the steps that also follow E_normal, at the end.",
+           .label = "Share of steps with normals",
+           .help = "The last part of the steps, as a share of all, also makes the normals of the Gaussians "
+                   "agree with those of the rendered depth.",
            .min = 0,
            .max = 1},
           o.refine_fraction);
   f.field({.name = "cap",
-           .label = "Gaussians",
-           .help = "Most Gaussians of a frame (BEAM fig. 8: about 140,000).",
+           .label = "Most Gaussians",
+           .help = "Growth stops at this many Gaussians in a frame; the paper has about 140,000.",
            .min = 100,
            .max = 4e6},
           o.cap);
@@ -283,13 +292,15 @@ void describe(Fields& f, FitSurfaceOptions& o) {
   f.group("refine", [&] {
     f.field({.name = "normal_weight",
              .label = "Normal weight",
-             .help = "lambda_normal: agreement of blended normals with those of the depth (BEAM 3.1: 0.03).",
+             .help = "How strongly the normals of the Gaussians are made to agree with those of the rendered "
+                     "depth; the paper takes 0.03.",
              .min = 0,
              .max = 10},
             o.normal_weight);
     f.field({.name = "expected_depth_share",
              .label = "Share of the expected depth",
-             .help = "Of E_normal; the rest acts on the median depth (RaDe-GS: 0.4).",
+             .help = "How much of the agreement of normals is asked of the mean depth along a ray; the rest "
+                     "is asked of the median depth. RaDe-GS takes 0.4.",
              .min = 0,
              .max = 1,
              .advanced = true},

@@ -171,58 +171,67 @@ FollowedSkin followGeometry(std::span<const FrameView> views, const FollowInput&
 namespace {
 
 void describeAdvanced(Fields& f, FollowSurfaceOptions& o) {
-  f.field({.name = "residual_weight",
-           .label = "Pull of the residual",
-           .help = "Ties what a Gaussian left its joints by to the frame before.",
-           .min = 0,
-           .max = 1e6,
-           .advanced = true},
-          o.residual_weight);
-  f.field({.name = "residual_rate",
-           .label = "Residual rate",
-           .help = "Learning rate of residual positions, times the scene extent.",
-           .min = 0,
-           .max = 1,
-           .advanced = true},
-          o.residual_rate);
+  f.field(
+      {.name = "residual_weight",
+       .label = "Pull on own motion",
+       .help = "How strongly the own motion of a Gaussian beside its joints stays that of the frame before.",
+       .min = 0,
+       .max = 1e6,
+       .advanced = true},
+      o.residual_weight);
+  f.field(
+      {.name = "residual_rate",
+       .label = "Learning rate, own position",
+       .help = "Learning rate of the own positions beside the joints, as a share of the extent of the scene.",
+       .min = 0,
+       .max = 1,
+       .advanced = true},
+      o.residual_rate);
   f.field({.name = "residual_rotation_rate",
-           .label = "Residual rotation rate",
-           .help = "Learning rate of residual rotations, radians.",
+           .label = "Learning rate, own rotation",
+           .help = "Learning rate of the own rotations beside the joints.",
            .min = 0,
            .max = 1,
+           .unit = "rad",
            .advanced = true},
           o.residual_rotation_rate);
   f.field({.name = "joint_rate",
-           .label = "Joint rate",
-           .help = "First learning rate of the joints' correction, in pixels; falls to a tenth.",
+           .label = "Learning rate, joint position",
+           .help = "Learning rate of the correction of the joints' positions at the first step, in pixels; "
+                   "falls to a tenth.",
            .min = 0,
            .max = 10,
+           .unit = "px",
            .advanced = true},
           o.joint_rate);
-  f.field({.name = "joint_rotation_rate",
-           .label = "Joint rotation rate",
-           .help = "Likewise of their rotations, radians.",
-           .min = 0,
-           .max = 1,
-           .advanced = true},
-          o.joint_rotation_rate);
+  f.field(
+      {.name = "joint_rotation_rate",
+       .label = "Learning rate, joint rotation",
+       .help =
+           "Learning rate of the correction of the joints' rotations at the first step; falls to a tenth.",
+       .min = 0,
+       .max = 1,
+       .unit = "rad",
+       .advanced = true},
+      o.joint_rotation_rate);
   f.field({.name = "scale_rate",
-           .label = "Scale rate",
-           .help = "Learning rate of log scales in later frames.",
+           .label = "Learning rate, size, later frames",
+           .help = "Learning rate of the logarithms of the sizes in later frames.",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.scale_rate);
   f.field({.name = "opacity_rate",
-           .label = "Opacity rate",
-           .help = "Learning rate of opacity logits in later frames.",
+           .label = "Learning rate, opacity, later frames",
+           .help = "Learning rate of the opacities before their sigmoid (logits) in later frames.",
            .min = 0,
            .max = 1,
            .advanced = true},
           o.opacity_rate);
   f.field({.name = "color_rate",
-           .label = "Colour rate",
-           .help = "Learning rate of the first SH band in later frames; others half of it.",
+           .label = "Learning rate, colour, later frames",
+           .help = "Learning rate, in later frames, of the colour that is the same from every side; what "
+                   "depends on the view learns half as fast.",
            .min = 0,
            .max = 1,
            .advanced = true},
@@ -239,34 +248,39 @@ void describe(Fields& f, FollowSurfaceOptions& o) {
            .max = 1e6},
           o.iterations);
   f.field({.name = "refine_fraction",
-           .label = "Share with normals",
-           .help = "Share of these steps that also follow E_normal, at the end.",
+           .label = "Share of steps with normals, later frames",
+           .help = "The last part of the steps of a later frame, as a share of all, also makes the normals "
+                   "of the Gaussians agree with those of the rendered depth.",
            .min = 0,
            .max = 1},
           o.refine_fraction);
   f.field({.name = "smooth_weight",
-           .label = "Smoothness",
-           .help = "lambda of E_smooth: neighbours on the skin move alike (BEAM 3.1: 0.001).",
+           .label = "Smoothness of motion",
+           .help = "How strongly neighbouring Gaussians are made to move alike from frame to frame; the "
+                   "paper takes 0.001.",
            .min = 0,
            .max = 100},
           o.smooth_weight);
   f.field({.name = "rest_weight",
-           .label = "Memory of the shape",
-           .help = "Weight of the same energy against the skin of the first frame; 0 is the paper's way.",
+           .label = "Hold to the first shape",
+           .help = "How strongly neighbouring Gaussians keep the places to each other that they had in the "
+                   "first frame of the take; 0 is the way of the paper.",
            .min = 0,
            .max = 100},
           o.rest_weight);
   f.field({.name = "temporal_weight",
-           .label = "Steadiness",
-           .help = "lambda of E_temp: appearance stays that of the frame before (BEAM 3.1: 5e-5).",
+           .label = "Hold to the frame before",
+           .help = "How strongly the appearance of a Gaussian stays that of the frame before, against "
+                   "flicker; the paper takes 0.00005.",
            .min = 0,
            .max = 100},
           o.temporal_weight);
   f.field(
       {
           .name = "residual",
-          .label = "Free the skin",
-          .help = "Lets each Gaussian leave its joints a little while E_normal acts; off is the paper's way.",
+          .label = "Own motion beside the joints",
+          .help = "Lets each Gaussian move a little away from the joints that carry it, in the steps with "
+                  "normals; off is the way of the paper.",
       },
       o.residual);
   describeAdvanced(f, o);

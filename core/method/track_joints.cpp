@@ -332,7 +332,8 @@ static void describeAdvanced(Fields& f, TrackJointsOptions& o);
 void describe(Fields& f, TrackJointsOptions& o) {
   f.field({.name = "joints",
            .label = "Joints",
-           .help = "Joint Gaussians that carry the motion (BEAM 3.1: about 15,000).",
+           .help = "Coarse Gaussians that carry the motion of the surface; they are no joints of a skeleton. "
+                   "The paper takes about 15,000.",
            .min = 100,
            .max = 200000},
           o.joints);
@@ -344,87 +345,97 @@ void describe(Fields& f, TrackJointsOptions& o) {
           o.first_iterations);
   f.field({.name = "iterations",
            .label = "Iterations, later frames",
-           .help = "Optimiser steps that follow the joints into the next frame, over all levels.",
+           .help = "Optimiser steps that move the joints into the next frame, over all levels.",
            .min = 2,
            .max = 1e6},
           o.iterations);
   f.field({.name = "levels",
            .label = "Coarse levels",
-           .help = "Levels before the full pictures, each of half the size: more of them catch faster limbs.",
+           .help = "Passes over smaller pictures, each half the size, before the full ones: more of them "
+                   "catch faster limbs.",
            .min = 0,
            .max = 6},
           o.levels);
-  f.field({.name = "rigid_weight",
-           .label = "Rigidity",
-           .help = "lambda of E_rigid (BEAM eq. 9: 0.05).",
-           .min = 0,
-           .max = 100},
-          o.rigid_weight);
-  f.field({.name = "rest_weight",
-           .label = "Memory of the shape",
-           .help = "Weight of the same energy against the first frame: joints that were hidden come back to "
-                   "their neighbours; 0 is the paper's way.",
-           .min = 0,
-           .max = 100},
-          o.rest_weight);
+  f.field(
+      {.name = "rigid_weight",
+       .label = "Rigidity",
+       .help = "How strongly neighbouring joints are made to move as one rigid piece; the paper takes 0.05.",
+       .min = 0,
+       .max = 100},
+      o.rigid_weight);
+  f.field(
+      {.name = "rest_weight",
+       .label = "Hold to the first shape",
+       .help =
+           "How strongly neighbouring joints keep the places to each other that they had in the first frame, "
+           "so that joints that were hidden come back to their neighbours; 0 is the way of the paper.",
+       .min = 0,
+       .max = 100},
+      o.rest_weight);
   describeAdvanced(f, o);
 }
 
 static void describeAdvanced(Fields& f, TrackJointsOptions& o) {
   f.field({.name = "rigid_spacings",
-           .label = "Reach of the graph",
-           .help = "Length of the graph's weights in spacings of the joints (0.02 m for 15,000).",
+           .label = "Reach of rigidity",
+           .help = "How far a joint acts on its neighbours, in mean distances between joints (with the "
+                   "paper's 15,000 joints on a person: 0.02 m).",
            .min = 0.1,
            .max = 100,
            .advanced = true},
           o.rigid_spacings);
   f.field({.name = "mask_weight",
            .label = "Mask weight",
-           .help = "Pull of the coverage towards the mask; 0 is off.",
+           .help = "How strongly the covered area is pulled towards the mask; 0 switches it off.",
            .min = 0,
            .max = 10,
            .advanced = true},
           o.mask_weight);
   f.field({.name = "position_rate",
-           .label = "Position rate",
-           .help = "First learning rate of positions, in pixels of the level.",
+           .label = "Learning rate, position",
+           .help = "Learning rate of the joints' positions at the first step, in pixels of the level.",
            .min = 0,
            .max = 10,
+           .unit = "px",
            .advanced = true},
           o.position_rate);
-  f.field({.name = "rotation_rate",
-           .label = "Rotation rate",
-           .help = "First learning rate of rotations, radians; doubles with every coarser level.",
-           .min = 0,
-           .max = 1,
-           .advanced = true},
-          o.rotation_rate);
+  f.field(
+      {.name = "rotation_rate",
+       .label = "Learning rate, rotation",
+       .help = "Learning rate of the joints' rotations at the first step; doubles with every coarser level.",
+       .min = 0,
+       .max = 1,
+       .unit = "rad",
+       .advanced = true},
+      o.rotation_rate);
   f.field({.name = "isotropy_weight",
-           .label = "Isotropy",
-           .help = "Against joints more than four times longer than thick (methods 3.2).",
+           .label = "Roundness",
+           .help = "How strongly joints over four times longer than thick are made rounder.",
            .min = 0,
            .max = 10,
            .advanced = true},
           o.isotropy_weight);
-  f.field({.name = "size_weight",
-           .label = "Equal sizes",
-           .help = "Against joints over five times or under a fifth of the mean size (methods 3.2).",
-           .min = 0,
-           .max = 100,
-           .advanced = true},
-          o.size_weight);
   f.field(
-      {.name = "recolor_iterations",
-       .label = "Follow the shading",
-       .help = "Steps that bring the joints' colours to the shading of each frame, smoothly over the body; "
-               "0 keeps those of the first frame, the paper's way.",
+      {.name = "size_weight",
+       .label = "Equal sizes",
+       .help =
+           "How strongly joints over five times or under a fifth of the mean size are brought towards it.",
        .min = 0,
-       .max = 1e5,
+       .max = 100,
        .advanced = true},
-      o.recolor_iterations);
+      o.size_weight);
+  f.field({.name = "recolor_iterations",
+           .label = "Shading iterations",
+           .help = "Steps that bring the colours of the joints to the shading of each frame, smoothly over "
+                   "the body; 0 keeps those of the first frame, the way of the paper.",
+           .min = 0,
+           .max = 1e5,
+           .advanced = true},
+          o.recolor_iterations);
   f.field({.name = "seed",
-           .label = "Seed",
-           .help = "Of all random numbers.",
+           .label = "Random seed",
+           .help = "Start of the random numbers: the same number gives the same result again, another one a "
+                   "slightly different result.",
            .min = 0,
            .max = 1e9,
            .advanced = true},

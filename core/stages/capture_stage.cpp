@@ -21,18 +21,20 @@ struct CaptureOptions {
 };
 
 void describe(Fields& fields, CaptureOptions& options) {
-  fields.field({.name = "downscale",
-                .label = "Downscale",
-                .help = "Pictures are used this many times smaller a side (the paper uses them as they are).",
-                .min = 1,
-                .max = 16},
-               options.downscale);
+  fields.field(
+      {.name = "downscale",
+       .label = "Downscale",
+       .help = "Pictures are used this many times smaller on each side; the paper uses them as they are.",
+       .min = 1,
+       .max = 16,
+       .unit = "times"},
+      options.downscale);
   fields.group("screen", [&] {
     fields.field(
         {.name = "enabled",
          .label = "Leave bad cameras out",
-         .help = "Cameras that are black, blurred or of another moment are left out of the fit of the "
-                 "frames where they are so: at most a quarter, and at least three remain."},
+         .help = "Cameras that are black, blurred or of another moment are left out of the fit of the frames "
+                 "where they are so: at most a quarter of them, and at least three remain."},
         options.screen);
   });
 }

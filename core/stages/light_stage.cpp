@@ -15,9 +15,11 @@ void describe(Fields& fields, LightOptions& options) {
   fields.field(
       {.name = "gain",
        .label = "Gain",
-       .help = "Factor on the panorama's radiance, when it was exposed differently from the photographs.",
+       .help =
+           "Factor on the radiance of the panorama, where it was exposed differently from the photographs.",
        .min = 1e-4,
-       .max = 1e4},
+       .max = 1e4,
+       .unit = "times"},
       options.gain);
 }
 

@@ -30,17 +30,19 @@ struct TrackOptions {
 void describe(Fields& f, TrackOptions& o) {
   describe(f, o.joints);
   f.field({.name = "restart_ratio",
-           .label = "Restart at",
-           .help = "Joints are fitted anew where the residual grows to this many times that after the last "
-                   "start, as when a jacket comes off; 0 is off.",
+           .label = "Restart threshold",
+           .help = "Joints are fitted anew in a frame that they match this many times worse than after the "
+                   "last start, as when a jacket comes off; 0 switches it off.",
            .min = 0,
-           .max = 1000},
+           .max = 1000,
+           .unit = "times"},
           o.restart_ratio);
   f.field({.name = "segment_frames",
-           .label = "Frames a segment",
+           .label = "Frames per segment",
            .help = "A take is cut into segments of this length, each of which can run alone; 0: never cut.",
            .min = 0,
            .max = 1e6,
+           .unit = "frames",
            .effect = Effect::SpeedOnly},
           o.segment_frames);
   f.field({.name = "overlap",
@@ -49,6 +51,7 @@ void describe(Fields& f, TrackOptions& o) {
                    "fitted alone, which holds less detail; 0: segments begin on their own.",
            .min = 0,
            .max = 100,
+           .unit = "frames",
            .effect = Effect::SpeedOnly},
           o.overlap);
 }
@@ -56,19 +59,20 @@ void describe(Fields& f, TrackOptions& o) {
 class TrackStage final : public StageOf<TrackOptions> {
  public:
   const StageInfo& info() const override {
-    static const StageInfo kInfo{
-        .id = "track",
-        .title = "Track",
-        .summary = "Follows joint Gaussians through a take; the skin of every later frame hangs on them.",
-        .steps = {{.id = "joints",
-                   .title = "Track joints",
-                   .source = "BEAM 3.1, eq. 9",
-                   .version = 2,
-                   .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "capture.screen"},
-                   .weight = 30,
-                   .frames = Frames::InTakes,
-                   .later = {.previous = {kJointsStep}}}}};
+    static const StageInfo kInfo{.id = "track",
+                                 .title = "Track",
+                                 .summary =
+                                     "Follows coarse Gaussians, the joints, through a take; they carry the "
+                                     "fine ones of every later frame.",
+                                 .steps = {{.id = "joints",
+                                            .title = "Track joints",
+                                            .source = "BEAM 3.1, eq. 9",
+                                            .version = 2,
+                                            .reads = {Reads::Pictures},
+                                            .inputs = {"capture.import", "capture.screen"},
+                                            .weight = 30,
+                                            .frames = Frames::InTakes,
+                                            .later = {.previous = {kJointsStep}}}}};
     return kInfo;
   }
 
