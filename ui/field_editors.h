@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// One editor a field kind: check box, choice, number, text. A value out of range is marked, explained and not
-// handed on.
+// One editor a field kind: check box, choice, number, text. What is typed stays until it is taken over; what
+// the field does not take is marked, explained and not handed on.
 #pragma once
 
 #include <QWidget>
 
 #include "core/base/fields.h"
+
+class QComboBox;
 
 namespace beam {
 
@@ -14,17 +16,36 @@ class FieldEditor : public QWidget {
 
  public:
   using QWidget::QWidget;
-  virtual void show(const FieldValue& value) = 0;  // emits nothing
+  // The value in force. Emits no edited(); what is typed and not taken over yet stays.
+  virtual void show(const FieldValue& value) = 0;
+  // As if the field had been left. Answers with why what is typed cannot be taken, in the words of refused();
+  // empty: nothing is left to take.
+  virtual QString takeOver() { return {}; }
+  // Drops what is typed.
+  virtual void restore() {}
+  virtual void setReadOnly(bool read_only) = 0;
+  virtual void setTip(const QString& tip) = 0;
+  // A check box: it has no use for width.
+  virtual bool isSmall() const { return false; }
 
  Q_SIGNALS:
   void edited(const beam::FieldValue& value);
   void refused(const QString& why);  // empty: the trouble is over
+
+ protected:
+  // Return stays here: in the window it would look through a camera.
+  void keyPressEvent(QKeyEvent* event) override;
 };
 
 FieldEditor* makeFieldEditor(const Field& field, QWidget* parent = nullptr);
 
-// "0 to 1", "at least 1", "" without limits.
-QString rangeText(const FieldInfo& info);
+// Every digit; for tooltips.
 QString valueText(const FieldValue& value);
+// As a field shows it: six digits of what is no whole number.
+QString shownText(const FieldValue& value);
+
+// A closed combo box leaves letters and digits to the views, and the wheel, unless it has the focus, to the
+// form that it stands in.
+void quieten(QComboBox& box);
 
 }  // namespace beam

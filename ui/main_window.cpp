@@ -174,9 +174,11 @@ void MainWindow::makeDocks() {
   inspector->addTab(display, "Display");
   inspector->addTab(settings_, "Settings");
   connect(rail_, &StageRail::chosen, this, [this, inspector](const std::string& stage) {
-    settings_->setStage(stage);
+    if (!settings_->setStage(stage)) rail_->select(settings_->stage());
     inspector->setCurrentWidget(settings_);
   });
+  connect(settings_, &SettingsPanel::attentionWanted, inspector,
+          [this, inspector] { inspector->setCurrentWidget(settings_); });
   log_ = new LogPanel;
   QDockWidget* left = dock("project", "Project", project_panel_, Qt::LeftDockWidgetArea);
   QDockWidget* right = dock("inspector", "Inspector", inspector, Qt::RightDockWidgetArea);

@@ -10,6 +10,7 @@
 #include "ui/main_window.h"
 #include "ui/message_panel.h"
 #include "ui/run_bar.h"
+#include "ui/settings_panel.h"
 #include "viewers/image/image_view.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
@@ -51,7 +52,9 @@ void MainWindow::makeMenus() {
   add(file, "Open panorama…", QKeySequence("Ctrl+L"), [this] { openLight(); });
   file->addSeparator();
   add(file, "Save settings", QKeySequence("Ctrl+S"), [this] {
-    if (model_.isOpen()) model_.save();
+    if (!model_.isOpen()) return;
+    if (const auto why = settings_->takeOver()) return say("The settings were not saved", *why);
+    model_.save();
   });
   add(file, "Save picture with labels…", QKeySequence("F12"), [this] { savePicture(); });
   file->addSeparator();

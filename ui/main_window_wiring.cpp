@@ -11,6 +11,7 @@
 #include "ui/message_panel.h"
 #include "ui/project_panel.h"
 #include "ui/run_bar.h"
+#include "ui/settings_panel.h"
 #include "ui/stage_rail.h"
 #include "ui/timeline_panel.h"
 #include "viewers/image/image_view.h"
@@ -115,6 +116,7 @@ void MainWindow::connectPlayer() {
 
 void MainWindow::run(const std::string& until, RunScope scope, int every) {
   if (!model_.isOpen() || job_.busy() || sample_.busy()) return;
+  if (const auto why = settings_->takeOver()) return say("The run did not start", *why);
   if (!model_.save()) return;
   message_->hide();
   RunRequest request;
@@ -135,6 +137,7 @@ void MainWindow::run(const std::string& until, RunScope scope, int every) {
   }
   timeline_->setRun(run_);
   job_.start(model_.project(), request, services_.job_device);
+  settings_->setRunning(true);
   run_bar_->showStarted(range.size() == 1 ? "Starting frame " +
                                                 QString::fromStdString(model_.capture()->frames[range.first])
                                           : QString("Starting %1 frames").arg(run_.frames.size()));
@@ -258,6 +261,7 @@ void MainWindow::showFinished(const JobFinished& outcome) {
   previewing_ = false;
   run_ = {};
   timeline_->setRun(run_);
+  settings_->setRunning(false);
   rail_->setRunning({}, 0);
   const QString took = durationText(outcome.seconds);
   const QString steps =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/parameter_form.h"
 
-#include <QGridLayout>
+#include <QEvent>
 #include <QLabel>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -9,135 +9,170 @@
 #include <algorithm>
 
 #include "ui/field_editors.h"
+#include "ui/field_row.h"
 
 namespace beam {
 namespace {
 
-QString tipOf(const Field& field, const FieldValue& standard) {
-  const FieldInfo& info = field.info;
-  QStringList lines{QString("<b>%1</b>").arg(QString::fromStdString(info.label).toHtmlEscaped()),
-                    QString::fromStdString(info.help).toHtmlEscaped()};
-  QString facts = QString("preset value %1").arg(valueText(standard).toHtmlEscaped());
-  if (const QString range = rangeText(info); !range.isEmpty()) facts += ", " + range;
-  if (!info.unit.empty()) facts += " " + QString::fromStdString(info.unit).toHtmlEscaped();
-  lines << facts << QString("<code>--set %1=…</code>").arg(QString::fromStdString(info.name).toHtmlEscaped());
-  if (info.effect == Effect::SpeedOnly) lines << "Changes speed only, never results.";
-  return lines.join("<br>");
+QVBoxLayout* columnOf(QWidget* owner) {
+  auto* column = new QVBoxLayout(owner);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(6);
+  return column;
 }
 
 }  // namespace
 
-ParameterForm::ParameterForm(QWidget* parent) : QWidget(parent) {
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-}
+ParameterForm::ParameterForm(QWidget* parent) : QWidget(parent) { columnOf(this); }
 
-void ParameterForm::setFields(const std::vector<Field>& fields, const std::vector<FieldValue>& standard) {
+void ParameterForm::setFields(const std::vector<Field>& fields, const std::vector<FieldValue>& standard,
+                              const std::vector<QString>& headings) {
   std::vector<std::string> names;
   for (const Field& field : fields) names.push_back(field.info.name);
-  if (names != names_) {
+  if (names != names_ || !body_) {
+    restore();
     names_ = names;
-    rebuild(fields, standard);
+    rebuild(fields, headings);
   }
-  for (std::size_t i = 0; i < fields.size(); ++i) update(rows_.at(names[i]), fields[i], standard[i]);
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    rows_.at(names[i])->update(fields[i], standard[i], why_not_);
 }
 
-void ParameterForm::rebuild(const std::vector<Field>& fields, const std::vector<FieldValue>& standard) {
+void ParameterForm::rebuild(const std::vector<Field>& fields, const std::vector<QString>& headings) {
   delete body_;
   rows_.clear();
   body_ = new QWidget;
   layout()->addWidget(body_);
-  auto* column = new QVBoxLayout(body_);
-  column->setContentsMargins(0, 0, 0, 0);
-  const auto newGrid = [](QWidget* owner) {
-    auto* grid = new QGridLayout(owner);
-    grid->setContentsMargins(0, 0, 0, 0);
-    grid->setVerticalSpacing(6);
-    grid->setColumnStretch(1, 1);
-    return grid;
-  };
-  auto* basic = new QWidget;
-  QGridLayout* basic_grid = newGrid(basic);
-  advanced_ = new QWidget;
-  QGridLayout* advanced_grid = newGrid(advanced_);
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    addRow(fields[i].info.advanced ? *advanced_grid : *basic_grid, fields[i], standard[i]);
-  }
+  QVBoxLayout* column = columnOf(body_);
+  column->addWidget(makePart(fields, headings, false));
   fold_ = new QToolButton;
   fold_->setObjectName("flat");
   fold_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  fold_->setText(QString("Advanced (%1)").arg(advanced_grid->rowCount() / 2));
-  const auto show = [this](bool on) {
-    unfolded_ = on;
-    advanced_->setVisible(on);
-    fold_->setArrowType(on ? Qt::DownArrow : Qt::RightArrow);
-  };
-  connect(fold_, &QToolButton::clicked, this, [this, show] { show(!unfolded_); });
-  column->addWidget(basic);
+  fold_->setText(
+      QString("Advanced (%1)").arg(std::count_if(fields.begin(), fields.end(), [](const Field& field) {
+        return field.info.advanced;
+      })));
+  fold_->setToolTip("Settings that seldom need a change");
+  connect(fold_, &QToolButton::clicked, this, [this] { unfold(!unfolded_); });
   column->addWidget(fold_);
+  advanced_ = makePart(fields, headings, true);
   column->addWidget(advanced_);
-  show(unfolded_);
-  fold_->setVisible(advanced_grid->count() > 0);
+  fold_->setVisible(
+      std::any_of(fields.begin(), fields.end(), [](const Field& f) { return f.info.advanced; }));
+  unfold(unfolded_);
   if (fields.empty()) {
     auto* nothing = new QLabel("This stage has no settings.");
     nothing->setObjectName("quiet");
+    nothing->setWordWrap(true);
     column->addWidget(nothing);
   }
+  agreeOnStacking();
 }
 
-void ParameterForm::addRow(QGridLayout& grid, const Field& field, const FieldValue& standard) {
-  Row row;
-  row.label = new QLabel(QString::fromStdString(field.info.label));
-  row.label->setToolTip(tipOf(field, standard));
-  row.label->setWordWrap(true);
-  row.editor = makeFieldEditor(field);
-  row.editor->setToolTip(row.label->toolTip());
-  row.editor->setMinimumWidth(90);
-  row.reset = new QToolButton;
-  row.reset->setObjectName("flat");
-  row.reset->setText("↺");
-  row.reset->setToolTip("Back to the preset's value, " + valueText(standard));
-  row.trouble = new QLabel;
-  row.trouble->setStyleSheet("color: #ee8d83");
-  row.trouble->setWordWrap(true);
-  row.trouble->hide();
-  auto* unit = new QLabel(QString::fromStdString(field.info.unit));
-  unit->setObjectName("quiet");
+QWidget* ParameterForm::makePart(const std::vector<Field>& fields, const std::vector<QString>& headings,
+                                 bool advanced) {
+  auto* part = new QWidget;
+  QVBoxLayout* column = columnOf(part);
+  QString heading;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i].info.advanced != advanced) continue;
+    if (i < headings.size() && headings[i] != heading) {
+      heading = headings[i];
+      auto* words = new QLabel(heading);
+      words->setObjectName("quiet");
+      words->setWordWrap(true);
+      column->addSpacing(6);
+      column->addWidget(words);
+    }
+    addRow(*part, fields[i]);
+  }
+  return part;
+}
+
+void ParameterForm::addRow(QWidget& part, const Field& field) {
   const std::string name = field.info.name;
-  connect(row.editor, &FieldEditor::edited, this,
+  auto* row = new FieldRow(field);
+  connect(row->editor(), &FieldEditor::edited, this,
           [this, name](const FieldValue& value) { Q_EMIT edited(name, value); });
-  connect(row.editor, &FieldEditor::refused, row.trouble, [label = row.trouble](const QString& why) {
-    label->setText(why);
-    label->setVisible(!why.isEmpty());
-  });
-  connect(row.reset, &QToolButton::clicked, this, [this, name] { Q_EMIT resetWanted(name); });
-  const int at = grid.rowCount();
-  grid.addWidget(row.label, at, 0);
-  grid.addWidget(row.editor, at, 1);
-  grid.addWidget(unit, at, 2);
-  grid.addWidget(row.reset, at, 3);
-  grid.addWidget(row.trouble, at + 1, 0, 1, 4);
+  connect(row->editor(), &FieldEditor::refused, this, [this, name](const QString& why) { note(name, why); });
+  connect(row, &FieldRow::resetWanted, this, [this, name] { Q_EMIT resetWanted(name); });
+  part.layout()->addWidget(row);
   rows_[name] = row;
 }
 
-void ParameterForm::update(Row& row, const Field& field, const FieldValue& standard) {
-  row.changed = field.value != standard;
-  row.editor->show(field.value);
-  QFont font = row.label->font();
-  font.setBold(row.changed);
-  row.label->setFont(font);
-  // The button keeps its place, so that nothing jumps under the hand.
-  row.reset->setEnabled(row.changed);
-  row.reset->setText(row.changed ? "↺" : " ");
-  row.reset->setToolTip("Back to the preset's value, " + valueText(standard));
+void ParameterForm::unfold(bool on) {
+  unfolded_ = on;
+  advanced_->setVisible(on);
+  fold_->setArrowType(on ? Qt::DownArrow : Qt::RightArrow);
+}
+
+// All beside or all above: a form of both is ragged.
+void ParameterForm::agreeOnStacking() {
+  int beside = 0;
+  for (const auto& [name, row] : rows_) beside = std::max(beside, row->besideWidth());
+  for (const auto& [name, row] : rows_) row->setStackedBelow(beside);
+}
+
+void ParameterForm::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) agreeOnStacking();
+}
+
+void ParameterForm::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  agreeOnStacking();  // styles are on only now
+}
+
+void ParameterForm::note(const std::string& name, const QString& why) {
+  const QString before = trouble();
+  std::erase_if(troubles_, [&](const Trouble& t) { return t.name == name; });
+  if (!why.isEmpty()) troubles_.push_back({name, why});
+  if (trouble() != before) Q_EMIT troubleChanged(trouble());
+}
+
+QString ParameterForm::trouble() const {
+  if (troubles_.empty()) return {};
+  const std::size_t more = troubles_.size() - 1;
+  if (more == 0) return troubles_.back().why;
+  return QString("%1 (and %2 more %3)")
+      .arg(troubles_.back().why)
+      .arg(more)
+      .arg(more == 1 ? "field" : "fields");
+}
+
+FieldEditor* ParameterForm::troubledEditor() const {
+  return troubles_.empty() ? nullptr : editor(troubles_.back().name);
+}
+
+std::optional<QString> ParameterForm::takeOver() {
+  FieldEditor* const last = troubledEditor();
+  for (const auto& [name, row] : rows_) {
+    if (row->editor() != last) row->editor()->takeOver();
+  }
+  if (last) last->takeOver();  // stays the last touched one
+  if (troubles_.empty()) return std::nullopt;
+  if (advanced_->isAncestorOf(troubledEditor())) unfold(true);
+  return trouble();
+}
+
+void ParameterForm::restore() {
+  for (const auto& [name, row] : rows_) row->editor()->restore();
 }
 
 FieldEditor* ParameterForm::editor(const std::string& name) const {
   const auto row = rows_.find(name);
-  return row == rows_.end() ? nullptr : row->second.editor;
+  return row == rows_.end() ? nullptr : row->second->editor();
 }
 
-bool ParameterForm::isMarkedChanged(const std::string& name) const { return rows_.at(name).changed; }
+bool ParameterForm::isMarkedChanged(const std::string& name) const { return rows_.at(name)->isChanged(); }
+
+std::vector<std::string> ParameterForm::changedNames() const {
+  std::vector<std::string> changed;
+  for (const std::string& name : names_) {
+    if (rows_.at(name)->isChanged()) changed.push_back(name);
+  }
+  return changed;
+}
 
 bool ParameterForm::advancedShown() const { return unfolded_; }
 

@@ -29,14 +29,26 @@ QString scoutText(const ScoutPlan& plan, int every) {
   const int solved = (plan.frames - 1) / every + 1;
   const int between = (solved - 1) * (every - 1), after = plan.frames - solved - between;
   QString words =
-      QString("%1 of %2 frames are solved with the preset %3").arg(solved).arg(plan.frames).arg(plan.preset);
+      "A scout run solves a few frames of the in–out range, evenly spread,\nfor a first look at all of "
+      "it.\n\n";
+  words += QString("%1 of %2 frames %3 solved with the preset %4")
+               .arg(solved)
+               .arg(plan.frames)
+               .arg(solved == 1 ? "is" : "are")
+               .arg(plan.preset);
   words +=
       plan.seconds_a_frame > 0
-          ? QString(": about %1, as frames took so far.").arg(durationText(solved * plan.seconds_a_frame))
-          : QString("; how long one takes is known after the first.");
-  words += QString("\n%1 between are interpolated: to look at, never scored.").arg(between);
-  if (after > 0) words += QString(" %1 after the last show that one.").arg(after);
-  return words + "\n\nSolve every Kth frame:";
+          ? QString(":\nabout %1, as frames took so far.").arg(durationText(solved * plan.seconds_a_frame))
+          : QString(";\nhow long one takes is known after the first.");
+  if (between > 0) {
+    words += QString("\n%1 between %2: to look at, without scores.")
+                 .arg(between)
+                 .arg(between == 1 ? "is interpolated" : "are interpolated");
+  }
+  if (after > 0) {
+    words += QString("\n%1 after the last %2 that one.").arg(after).arg(after == 1 ? "shows" : "show");
+  }
+  return words + "\n\nDistance from one solved frame to the next, in frames:";
 }
 
 std::optional<int> askScout(QWidget* parent, const ScoutPlan& plan, int every) {

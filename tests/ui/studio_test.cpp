@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The window and its parts on a virtual display: forms, opening, running, cancelling, saying what went wrong.
+// The window and its parts on a virtual display: opening, running, cancelling, saying what went wrong.
 #include <gtest/gtest.h>
 
 #include <QApplication>
-#include <QComboBox>
 #include <QLineEdit>
+#include <QTest>
 
 #include <thread>
 
@@ -29,82 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::TempDir;
 using testing::waitFor;
-
-struct DemoOptions {
-  int iterations = 100;
-  double rate = 1.6e-4;
-  bool careful = true;
-  std::string solver = "linear";
-};
-void describe(Fields& f, DemoOptions& o) {
-  f.field({.name = "iterations", .label = "Iterations", .help = "Steps.", .min = 1, .max = 1000},
-          o.iterations);
-  f.field({.name = "rate", .label = "Rate", .help = "Learning rate.", .min = 0, .max = 1, .advanced = true},
-          o.rate);
-  f.field({.name = "careful", .label = "Careful", .help = "Look twice."}, o.careful);
-  f.field({.name = "solver", .label = "Solver", .help = "How.", .choices = {"linear", "adam"}}, o.solver);
-}
-
-std::vector<FieldValue> valuesOf(const std::vector<Field>& fields) {
-  std::vector<FieldValue> values;
-  for (const Field& field : fields) values.push_back(field.value);
-  return values;
-}
-
-class Form : public ::testing::Test {
- protected:
-  Form() {
-    form.setFields(fieldsOf(options), valuesOf(fieldsOf(DemoOptions{})));
-    QObject::connect(&form, &ParameterForm::edited, &form,
-                     [this](const std::string& name, const FieldValue& value) {
-                       FieldSetter setter(name, value);
-                       describe(setter, options);
-                       ++edits;
-                     });
-  }
-  void type(const std::string& name, const QString& text) {
-    auto* line = form.editor(name)->findChild<QLineEdit*>();
-    line->setText(text);
-    Q_EMIT line->textEdited(text);
-    Q_EMIT line->editingFinished();
-  }
-
-  DemoOptions options;
-  int edits = 0;
-  ParameterForm form;
-};
-
-TEST_F(Form, EditsTheOptionsItWasMadeFrom) {
-  type("iterations", "250");
-  type("rate", "3e-5");
-  auto* solver = form.editor("solver")->findChild<QComboBox*>();
-  solver->setCurrentText("adam");
-  Q_EMIT solver->activated(solver->currentIndex());
-  EXPECT_EQ(options.iterations, 250);
-  EXPECT_EQ(options.rate, 3e-5);
-  EXPECT_EQ(options.solver, "adam");
-  EXPECT_EQ(edits, 3);
-}
-
-TEST_F(Form, RefusesWhatIsOutOfRangeOrNoNumberAndSaysSo) {
-  for (const char* wrong : {"0", "1001", "many", "2.5"}) {
-    type("iterations", wrong);
-    EXPECT_EQ(options.iterations, 100) << wrong;
-    EXPECT_FALSE(form.editor("iterations")->findChild<QLineEdit*>()->toolTip().isEmpty()) << wrong;
-  }
-  EXPECT_EQ(edits, 0);
-}
-
-TEST_F(Form, MarksWhatDiffersFromThePresetAndFoldsWhatIsAdvanced) {
-  EXPECT_FALSE(form.isMarkedChanged("iterations"));
-  options.iterations = 7;
-  form.setFields(fieldsOf(options), valuesOf(fieldsOf(DemoOptions{})));
-  EXPECT_TRUE(form.isMarkedChanged("iterations"));
-  EXPECT_FALSE(form.isMarkedChanged("rate"));
-  EXPECT_FALSE(form.advancedShown());
-  EXPECT_FALSE(form.editor("rate")->isVisibleTo(&form));
-  EXPECT_TRUE(form.editor("iterations")->isVisibleTo(&form));
-}
 
 // A capture of a sphere, in memory.
 class SphereSource final : public FrameSource {
@@ -243,6 +167,66 @@ TEST_F(Studio, KeepsAnEditedSettingInTheProject) {
   EXPECT_EQ(again.value("surface.steps"), FieldValue(77));
   Q_EMIT window.settings().form().resetWanted("surface.steps");
   EXPECT_FALSE(window.settings().form().isMarkedChanged("surface.steps"));
+}
+
+// What a person does: the tab is in front, the cursor in the field.
+QLineEdit& enterField(MainWindow& window, const std::string& name) {
+  QApplication::setActiveWindow(&window);
+  Q_EMIT window.settings().attentionWanted();
+  auto* line = window.settings().form().editor(name)->findChild<QLineEdit*>();
+  QTest::mouseDClick(line, Qt::LeftButton);
+  line->selectAll();
+  return *line;
+}
+
+TEST_F(Studio, RunsWhatIsTypedThoughTheFieldWasNotLeft) {
+  ASSERT_TRUE(openCapture());
+  QLineEdit& line = enterField(window, "surface.steps");
+  QTest::keyClicks(&line, "9");
+  EXPECT_TRUE(line.hasFocus());
+  QTest::keyClick(&line, Qt::Key_Return, Qt::ControlModifier);
+  EXPECT_TRUE(window.job().busy());
+  EXPECT_EQ(window.model().project().value("surface.steps"), FieldValue(9));
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
+  const Project saved = Project::open(folder / "capture.beam", window.model().services().pipeline);
+  EXPECT_EQ(saved.value("surface.steps"), FieldValue(9));
+}
+
+TEST_F(Studio, StartsNoRunWithAValueThatCannotBeTakenAndNamesItsLabel) {
+  ASSERT_TRUE(openCapture());
+  QLineEdit& line = enterField(window, "surface.steps");
+  QTest::keyClicks(&line, "abc");
+  window.run();
+  EXPECT_FALSE(window.job().busy());
+  ASSERT_TRUE(window.message().isVisible());
+  EXPECT_TRUE(
+      window.message().text().contains("Steps expects a whole number from 1 to 1,000,000, found \"abc\""))
+      << window.message().text().toStdString();
+  EXPECT_EQ(line.text().toStdString(), "abc");
+  EXPECT_TRUE(line.hasFocus());
+  QTest::keyClick(&line, Qt::Key_Escape);
+  window.run();
+  EXPECT_TRUE(window.job().busy());
+  window.cancelRun();
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }));
+}
+
+TEST_F(Studio, SavesWhatIsTypedThoughTheFieldWasNotLeft) {
+  ASSERT_TRUE(openCapture());
+  QLineEdit& line = enterField(window, "surface.steps");
+  QTest::keyClicks(&line, "23");
+  QTest::keyClick(&line, Qt::Key_S, Qt::ControlModifier);
+  const Project saved = Project::open(folder / "capture.beam", window.model().services().pipeline);
+  EXPECT_EQ(saved.value("surface.steps"), FieldValue(23));
+}
+
+TEST_F(Studio, SaysDuringARunThatChangesAreForTheNextOne) {
+  ASSERT_TRUE(openCapture());
+  window.run();
+  EXPECT_TRUE(window.settings().note().contains("next run"));
+  window.cancelRun();
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }));
+  EXPECT_TRUE(window.settings().note().isEmpty());
 }
 
 TEST_F(Studio, ClosesDuringARun) {
