@@ -9,12 +9,13 @@
 #include "viewers/view_state.h"
 
 class QCheckBox;
-class QComboBox;
 class QLabel;
+class QPushButton;
 class QSlider;
 
 namespace beam {
 
+class QuietCombo;
 class SplatView;
 
 class DisplayPanel final : public QWidget {
@@ -27,18 +28,21 @@ class DisplayPanel final : public QWidget {
   void openLightWanted();
 
  private:
+  void makeRows();
+  void connectParts();
   void mirror(const ViewState& state);
   void fillLights();
 
   SplatView& view_;
   LightLibrary& lights_;
-  QComboBox* channel_;
-  QComboBox* light_;
+  QuietCombo* channel_;
+  QuietCombo* light_;
   QSlider* yaw_;
   QSlider* exposure_;
   QSlider* photo_;
   QLabel *yaw_words_, *exposure_words_, *photo_words_;
   QCheckBox* sky_;
+  QPushButton* open_;
 };
 
 }  // namespace beam

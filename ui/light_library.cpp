@@ -39,6 +39,7 @@ void LightLibrary::choose(int index) {
     Q_EMIT lightChanged();
     return;
   }
+  Q_EMIT lightChanged();
   worker_.submit([this, file = entries_[index].file, ticket] {
     std::shared_ptr<const PreparedLight> light;
     QString error;

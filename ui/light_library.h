@@ -37,11 +37,13 @@ class LightLibrary final : public QObject {
   int chosen() const { return chosen_; }               // -1: none
   std::shared_ptr<const PreparedLight> light() const;  // of the chosen one; null while it is prepared
   QString name() const;
+  // The chosen one is on its way.
+  bool reading() const { return chosen_ >= 0 && seen_ != ticket_; }
   bool settled() const { return seen_ == ticket_; }
 
  Q_SIGNALS:
   void entriesChanged();
-  void lightChanged();
+  void lightChanged();  // light(), name() or reading()
   void failed(const QString& what, const QString& why);
 
  private:

@@ -36,8 +36,8 @@ void MainWindow::connectModel() {
     showStatus();
   });
   connect(&lights_, &LightLibrary::lightChanged, this, [this] {
-    splat_->setLight(lights_.light(), lights_.name());
-    images_->setLight({lights_.light(), splat_->state().yaw_rad});
+    splat_->setLight(lights_.light(), lights_.name(), lights_.reading());
+    images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading()});
   });
   connect(&lights_, &LightLibrary::failed, this, &MainWindow::say);
 }
@@ -45,7 +45,8 @@ void MainWindow::connectModel() {
 void MainWindow::connectViews() {
   connect(views_, &QStackedWidget::currentChanged, this, [this] {
     // The light may have been turned since; and a view that is not seen does not follow the frames.
-    if (views_->currentWidget() == images_) images_->setLight({lights_.light(), splat_->state().yaw_rad});
+    if (views_->currentWidget() == images_)
+      images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading()});
     showValuesIn(shownView());
   });
   connect(scene_, &SceneView::jointPicked, &joints_, &JointSource::pick);

@@ -57,85 +57,121 @@ struct Shot {
   std::shared_ptr<const CaptureSet> capture;
   ViewIndex view;
   FrameIndex frame;
-  std::string camera, where;  // name; "camera C03 · frame 000002"
+  std::string camera, frame_name, where;  // "C03", "000002", "camera C03 · frame 000002"
 };
 
-void addPhotograph(std::vector<PictureSource>& sources, const Shot& shot) {
+[[noreturn]] void refuse(const std::string& why) { throw Error(Error::Kind::Data, why); }
+
+Image<std::uint8_t> maskOf(const Shot& shot) {
+  Image<std::uint8_t> mask = shot.capture->source->mask(shot.view, shot.frame);
+  if (mask.empty()) refuse(fmt::format("camera {} has no mask of frame {}", shot.camera, shot.frame_name));
+  return mask;
+}
+
+Picture photographOf(const Shot& shot) {
   const auto& source = shot.capture->source;
-  if (!source || !source->has(shot.view, shot.frame)) return;
-  sources.push_back({"photo", "Photograph", [shot] {
-                       return pictureOf(shot.capture->source->photo(shot.view, shot.frame),
-                                        fmt::format("Photograph · {}", shot.where));
-                     }});
-  if (shot.capture->masks == MaskKind::None) return;
-  sources.push_back({"mask", "Mask", [shot] {
-                       const Image<std::uint8_t> mask = shot.capture->source->mask(shot.view, shot.frame);
-                       if (mask.empty()) {
-                         throw Error(Error::Kind::Data,
-                                     fmt::format("{} has no mask in the capture", shot.where));
-                       }
-                       return pictureOf(mask, fmt::format("Mask · {}", shot.where));
-                     }});
+  if (!source || !source->has(shot.view, shot.frame))
+    refuse(fmt::format("camera {} has no photograph of frame {}", shot.camera, shot.frame_name));
+  Picture p = pictureOf(source->photo(shot.view, shot.frame), fmt::format("Photograph · {}", shot.where));
+  if (shot.capture->masks != MaskKind::None) p.mask = [shot] { return maskOf(shot); };
+  return p;
+}
+
+void addPhotograph(std::vector<PictureSource>& sources, const Shot& shot) {
+  const PictureIngredients made_of{.values = {shot.capture}, .view = shot.view, .frame = shot.frame};
+  sources.push_back({"photo", "Photograph", made_of, [shot] { return photographOf(shot); }});
+  if (!shot.capture->source || shot.capture->masks == MaskKind::None) return;
+  sources.push_back({"mask", "Mask", made_of,
+                     [shot] { return pictureOf(maskOf(shot), fmt::format("Mask · {}", shot.where)); }});
+}
+
+// What a rendered channel is made of, and what it lacks.
+struct Render {
+  Shot shot;
+  FrameValues values;
+  PictureLight light;
+  std::shared_ptr<ComputeDevice> device;
+};
+
+Picture renderedOf(const Render& r, Channel channel) {
+  const char* title = infoOf(channel).title;
+  const bool of_materials = channel == Channel::Lit || channel == Channel::BaseColor ||
+                            channel == Channel::AmbientOcclusion || channel == Channel::Roughness;
+  if (!r.values.cloud) {
+    refuse(fmt::format("frame {} is not solved: there is nothing to render. Press Run to compute it.",
+                       r.shot.frame_name));
+  }
+  if (of_materials && !r.values.materials) {
+    refuse(fmt::format("{} needs materials, which frame {} does not have yet. Run until Materials.", title,
+                       r.shot.frame_name));
+  }
+  if (channel == Channel::Lit && !r.light.light) {
+    refuse(r.light.reading ? "reading the light"
+                           : "No light chosen. Choose or open a panorama under Display.");
+  }
+  GBufferRenderer renderer(*r.device);
+  const Camera& camera = r.shot.capture->views[r.shot.view.value].camera;
+  const GBuffer g = renderer.render(*r.values.cloud, r.values.materials.get(), camera);
+  Image<vec3> lit;
+  if (channel == Channel::Lit) lit = shade(g, camera, *r.light.light, {.yaw_rad = r.light.yaw_rad});
+  return channelOf(g, lit, channel, fmt::format("Rendered {} · {}", title, r.shot.where));
 }
 
 void addRenders(std::vector<PictureSource>& sources, const Shot& shot, const ProjectModel& model,
                 const PictureLight& light) {
   const FrameValues& values = model.values();
-  if (!values.cloud) return;
+  const Render render{shot, values, light, model.services().view_device};
   for (int c = 0; c < kChannelCount; ++c) {
     const auto channel = static_cast<Channel>(c);
-    const bool of_materials = channel == Channel::Lit || channel == Channel::BaseColor ||
-                              channel == Channel::AmbientOcclusion || channel == Channel::Roughness;
-    if (of_materials && !values.materials) continue;
-    if (channel == Channel::Lit && !light.light) continue;
     const ChannelInfo& info = infoOf(channel);
-    sources.push_back({QString("render.") + info.name, QString("Rendered: ") + info.title,
-                       [shot, values, channel, light, device = model.services().view_device] {
-                         GBufferRenderer renderer(*device);
-                         const Camera& camera = shot.capture->views[shot.view.value].camera;
-                         const GBuffer g = renderer.render(*values.cloud, values.materials.get(), camera);
-                         Image<vec3> lit;
-                         if (channel == Channel::Lit)
-                           lit = shade(g, camera, *light.light, {.yaw_rad = light.yaw_rad});
-                         return channelOf(g, lit, channel,
-                                          fmt::format("Rendered {} · {}", infoOf(channel).title, shot.where));
-                       }});
+    PictureIngredients made_of{
+        .values = {shot.capture, values.cloud, values.materials}, .view = shot.view, .frame = shot.frame};
+    if (channel == Channel::Lit) {
+      made_of.values.push_back(light.light);
+      made_of.yaw_rad = light.yaw_rad;
+      made_of.reading = light.reading;
+    }
+    sources.push_back({QString("render.") + info.name, QString("Rendered: ") + info.title, made_of,
+                       [render, channel] { return renderedOf(render, channel); }});
   }
 }
 
+struct Map {
+  const char *file, *title;
+  bool color;
+};
+constexpr Map kMaps[] = {{"ao", "Ambient occlusion", false},
+                         {"base_color", "Base colour", true},
+                         {"ao_weight", "Weight of ambient occlusion", false},
+                         {"base_color_weight", "Weight of base colour", false}};
+
+Picture bakedOf(const Shot& shot, const Map& map, const Project& project) {
+  if (shot.capture->views[shot.view.value].split != Split::Train)
+    refuse(fmt::format("camera {} is held out for tests: no maps are baked for it", shot.camera));
+  const auto folder = project.result("materials.bake", shot.frame);
+  if (!folder) refuse("The maps are not baked with these settings. Run until Materials.");
+  const auto file = *folder / kMapsFolder / fmt::format("{}.{}.exr", shot.camera, map.file);
+  if (!std::filesystem::exists(file)) {
+    refuse(fmt::format("camera {} has no maps of frame {}: it was left out of the fit", shot.camera,
+                       shot.frame_name));
+  }
+  Picture p;
+  p.label = fmt::format("Baked {} · {}", map.title, shot.where);
+  p.values =
+      readExr(file, map.color ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"});
+  p.encoding = map.color ? Encoding::Linear : Encoding::Data;
+  p.false_color = std::string_view(map.file).ends_with("weight");
+  if (p.false_color) p.unit = std::string("weight");
+  return p;
+}
+
 void addMaps(std::vector<PictureSource>& sources, const Shot& shot, const ProjectModel& model) {
-  if (shot.capture->views[shot.view.value].split != Split::Train) return;
-  bool baked = false;
-  for (const StageStatus& stage : model.stages())
-    baked = baked || (stage.id == "materials" && stage.state == StepState::Done);
-  if (!baked && !model.values().materials) return;
-  struct Map {
-    const char *file, *title;
-    bool color;
-  };
-  for (const Map& map : {Map{"ao", "Ambient occlusion", false}, Map{"base_color", "Base colour", true},
-                         Map{"ao_weight", "Weight of ambient occlusion", false},
-                         Map{"base_color_weight", "Weight of base colour", false}}) {
-    sources.push_back({QString("map.") + map.file, QString("Baked map: ") + map.title,
-                       [shot, map, project = model.project()] {
-                         const auto folder = project.result("materials.bake", shot.frame);
-                         if (!folder)
-                           throw Error(Error::Kind::Data,
-                                       "The maps are not baked with these settings. Run until Materials.");
-                         const auto file =
-                             *folder / kMapsFolder / fmt::format("{}.{}.exr", shot.camera, map.file);
-                         if (!std::filesystem::exists(file))
-                           throw Error(Error::Kind::Data,
-                                       "This camera has no maps of this frame: it was left out of the fit.");
-                         Picture p;
-                         p.label = fmt::format("Baked {} · {}", map.title, shot.where);
-                         p.values = readExr(file, map.color ? std::vector<std::string>{"R", "G", "B"}
-                                                            : std::vector<std::string>{"Y"});
-                         p.encoding = map.color ? Encoding::Linear : Encoding::Data;
-                         p.false_color = std::string_view(map.file).ends_with("weight");
-                         if (p.false_color) p.unit = std::string("weight");
-                         return p;
-                       }});
+  // The survey is new whenever something was computed.
+  const PictureIngredients made_of{
+      .values = {shot.capture, model.survey()}, .view = shot.view, .frame = shot.frame};
+  for (const Map& map : kMaps) {
+    sources.push_back({QString("map.") + map.file, QString("Baked map: ") + map.title, made_of,
+                       [shot, map, project = model.project()] { return bakedOf(shot, map, project); }});
   }
 }
 
@@ -146,9 +182,9 @@ std::vector<PictureSource> pictureSources(const ProjectModel& model, ViewIndex v
   std::vector<PictureSource> sources;
   const std::shared_ptr<const CaptureSet> capture = model.capture();
   if (!capture) return sources;
-  const std::string& camera = capture->views[view.value].name;
-  const Shot shot{capture, view, model.frame(), camera,
-                  fmt::format("camera {} · frame {}", camera, capture->frames[model.frame().value])};
+  const std::string &camera = capture->views[view.value].name, &frame = capture->frames[model.frame().value];
+  const Shot shot{capture, view,  model.frame(),
+                  camera,  frame, fmt::format("camera {} · frame {}", camera, frame)};
   addPhotograph(sources, shot);
   addRenders(sources, shot, model, light);
   addMaps(sources, shot, model);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything that can be looked at as a picture from one camera: photograph, mask, rendered channels, baked
-// maps.
+// maps. What a frame does not have stays in the list, and says so when it is looked at: a choice outlives the
+// frames without it.
 #pragma once
 
 #include <QString>
@@ -14,19 +15,32 @@
 
 namespace beam {
 
+// Of what a picture is made; equal ingredients give the same picture.
+struct PictureIngredients {
+  std::vector<std::shared_ptr<const void>> values;
+  ViewIndex view;
+  FrameIndex frame;
+  float yaw_rad = 0;
+  bool reading = false;  // a light that is not there yet
+  bool operator==(const PictureIngredients&) const = default;
+};
+
 struct PictureSource {
   QString id;     // stable: "photo", "mask", "render.lit", "map.ao"
   QString title;  // "Photograph"
+  PictureIngredients made_of;
   PictureLoader loader;
 };
 
-// A light for the rendered "lit" picture; may be null.
+// A light for the rendered "lit" picture; may be null, and then `reading` says whether it is on its way.
 struct PictureLight {
   std::shared_ptr<const PreparedLight> light;
   float yaw_rad = 0;
+  bool reading = false;
+  bool operator==(const PictureLight&) const = default;
 };
 
-// What exists for the model's frame; loaders work on a snapshot, so later changes do not reach them.
+// Of the model's frame; loaders work on a snapshot, so later changes do not reach them.
 std::vector<PictureSource> pictureSources(const ProjectModel& model, ViewIndex view,
                                           const PictureLight& light);
 

@@ -69,6 +69,7 @@ void ImageView::refresh(int side) {
   if (!s.loader) {
     s.seen = ticket;
     arrange();
+    Q_EMIT legendChanged();
     return;
   }
   const std::shared_ptr<const Picture> other = side == 1 ? sides_[0].picture : nullptr;

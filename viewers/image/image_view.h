@@ -50,6 +50,9 @@ class ImageView final : public PictureCanvas {
   // The figures of the difference in view, or why there is none.
   QString verdict() const;
 
+  // Why what was asked for on this side cannot be shown; empty: nothing to say.
+  const QString& note(int side) const { return sides_[side].note; }
+
   bool handleKey(const QKeyEvent& event);
   bool settled() const;
 
