@@ -55,16 +55,24 @@ void MainWindow::connectViews() {
     scene_->setJoints(shown.trails, shown.hint);
     scene_->setInfluence(shown.influence ? joints_.picked() : -1, shown.influence);
   });
+  connect(scene_, &SceneView::cameraPicked, this, [this](ViewIndex view) {
+    project_panel_->mark(view);
+    images_->choose(view);
+  });
+  connect(scene_, &SceneView::cameraActivated, splat_, &SplatView::lookThrough);
   connect(splat_, &SplatView::hovered, reading_, &QLabel::setText);
   connect(splat_, &SplatView::pictureShown, this, &MainWindow::showStatus);
   connect(&images_->view(), &ImageView::hovered, reading_, &QLabel::setText);
   connect(splat_, &SplatView::stateChanged, this, [this](const ViewState& state) {
     project_panel_->mark(state.look_through);
-    if (state.look_through) images_->choose(*state.look_through);
+    if (!state.look_through) return;
+    images_->choose(*state.look_through);
+    scene_->markCamera(state.look_through);
   });
   connect(project_panel_, &ProjectPanel::cameraActivated, this, [this](ViewIndex view) {
     images_->choose(view);
     splat_->lookThrough(view);
+    scene_->lookThrough(view);
   });
 }
 

@@ -76,7 +76,6 @@ std::optional<vec3> SceneView::State::surfaceAt(QPointF at) {
   moving = true;
   updateVisibility();
   for (vtkActor* line : lines) line->VisibilityOff();
-  for (auto& name : axis_names) name->VisibilityOff();
   overlay->DrawOff();
   place();
   window->Render();

@@ -70,7 +70,7 @@ void SceneView::State::addActors() {
     axis_names[i]->SetPosition(at.x, at.y, at.z);
     axis_names[i]->GetTextProperty()->SetFontSize(15);
     axis_names[i]->GetTextProperty()->SetColor(0.85, 0.87, 0.9);
-    renderer->AddActor(axis_names[i]);
+    overlay->AddActor(axis_names[i]);  // a word cut by the body cannot be read
   }
 }
 
