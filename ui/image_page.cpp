@@ -74,7 +74,7 @@ ImagePage::ImagePage(const ProjectModel& model, QWidget* parent)
   row_layout_->setSpacing(kSpacing_px);
   judging_layout_->setSpacing(kSpacing_px);
   judging_layout_->addWidget(comparing_);
-  judging_layout_->addWidget(holding_);
+  judging_layout_->addWidget(holding_, 1);
   row_layout_->addWidget(choice_, 1);
   row_layout_->addLayout(judging_layout_);
   auto* column = new QVBoxLayout(this);

@@ -295,6 +295,16 @@ QString ImageView::sideText(int side) const {
   return text;
 }
 
+// Of both; what they have in common, mostly camera and frame, stands once.
+QString ImageView::pairText() const {
+  QStringList a = sideText(0).split(" · "), b = sideText(1).split(" · "), common;
+  while (a.size() > 1 && b.size() > 1 && a.last() == b.last()) {
+    common.prepend(a.takeLast());
+    b.removeLast();
+  }
+  return (a + b + common).join(" · ");
+}
+
 QString ImageView::footText() const {
   QStringList notes;
   for (const Side& s : sides_) {
@@ -343,9 +353,7 @@ void ImageView::paintTitles(QPainter& painter) {
     return paintBadge(painter, (left | right).bottom());
   }
   const int side = peek_ || !sides_[0].picture ? 1 : 0;
-  const bool apart = comparing() && !peek_;
-  const QString title =
-      apart ? "|A − B| · " + sideText(0) + " · " + sideText(1) + "\n" + verdict() : sideText(side);
+  const QString title = apart() && !peek_ ? "|A − B| · " + pairText() + "\n" + verdict() : sideText(side);
   titleIs(paintLabel(painter, {kBeside_px, kBeside_px}, Qt::AlignLeft | Qt::AlignTop, title,
                      {.width_px = width() - 2 * kBeside_px}));
   paintBadge(painter, words().title.bottom());

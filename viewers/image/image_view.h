@@ -121,6 +121,7 @@ class ImageView final : public PictureCanvas {
   QRectF pictureRect() const;
   void reportHover(QPointF position);
   QString sideText(int side) const;
+  QString pairText() const;
   QString footText() const;
   void paintTitles(QPainter& painter);
 

@@ -358,7 +358,8 @@ QString SplatView::noteText() const {
   if (!photo_note_.isEmpty()) notes << photo_note_;
   const QString lack = lackText();
   if (!lack.isEmpty()) notes << lack;
-  if (lack.isEmpty() && !light_being_read_.isEmpty()) notes << "reading the light " + light_being_read_;
+  const bool waits = (state_.channel == Channel::Lit || state_.sky) && !light_being_read_.isEmpty();
+  if (lack.isEmpty() && waits) notes << "reading the light " + light_being_read_;
   return notes.join("\n");
 }
 
