@@ -16,7 +16,8 @@ void ElidedLabel::setText(const QString& text) {
   if (text == whole_) return;
   whole_ = text;
   setAccessibleName(text);
-  updateGeometry();
+  // Words that take what room there is ask for no new layout, thirty times a second.
+  if (sizePolicy().horizontalPolicy() != QSizePolicy::Ignored) updateGeometry();
   showTip();
   update();
 }

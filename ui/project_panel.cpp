@@ -22,7 +22,7 @@
 namespace beam {
 namespace {
 
-constexpr int kLeastLetters = 6;
+constexpr int kLeastLetters = 4;
 
 QFrame* line() {
   auto* frame = new QFrame;
@@ -57,6 +57,7 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
       cameras_(new QTreeWidget) {
   facts_->setObjectName("quiet");
   facts_->setWordWrap(true);
+  facts_->setMinimumWidth(1);  // a long name does not make the panel wide
   frames_->setFocusPolicy(Qt::StrongFocus);
   frames_->setAccessibleName("Frame");
   frames_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);

@@ -46,13 +46,8 @@ double TimelineLanes::laneHeight() const {
 double TimelineLanes::curveHeight() const { return 3.5 * fontMetrics().height(); }
 
 double TimelineLanes::namesWidth() const {
-  double widest = QFontMetrics(smallFont(font())).horizontalAdvance(kMemoryName);
-  for (std::size_t i = 0; survey_ && i < survey_->lanes.size(); ++i) {
-    const QString title = QString::fromStdString(survey_->lanes[i].title);
-    widest = std::max(widest, static_cast<double>(fontMetrics().horizontalAdvance(title)));
-  }
   // On a device pixel, so that cells are drawn sharp.
-  const double wanted = std::min(widest + 2 * kMargin, kMostNames * width());
+  const double wanted = std::min(titles_ + 2 * kMargin, kMostNames * width());
   return std::ceil(wanted * devicePixelRatioF()) / devicePixelRatioF();
 }
 
@@ -84,6 +79,11 @@ void TimelineLanes::shadeLanes() {
 }
 
 void TimelineLanes::askForHeight() {
+  titles_ = QFontMetrics(smallFont(font())).horizontalAdvance(kMemoryName);
+  for (std::size_t i = 0; survey_ && i < survey_->lanes.size(); ++i) {
+    const QString title = QString::fromStdString(survey_->lanes[i].title);
+    titles_ = std::max(titles_, static_cast<double>(fontMetrics().horizontalAdvance(title)));
+  }
   updateGeometry();
   Q_EMIT heightChanged();
 }

@@ -69,6 +69,7 @@ class TimelineLanes final : public QWidget {
   QString tipAt(QPointF position) const;
 
   std::shared_ptr<const TakeSurvey> survey_;
+  double titles_ = 0;  // width of the widest
   int frame_ = 0;
   FrameRange range_{0, -1};
   std::vector<bool> held_;

@@ -22,14 +22,14 @@
 namespace beam {
 namespace {
 
-constexpr int kLeastLetters = 8;      // of the words beside the buttons
+constexpr int kSides = 16, kSpacing = 4;
+constexpr int kLeastLetters = 5;      // of the words beside the buttons
 constexpr double kLanesShare = 0.28;  // of the window's height that the lanes may insist on
-constexpr int kCurveLetters = 10;
+constexpr int kCurveLetters = 6;
 
-QToolButton* button(QHBoxLayout* row, const QString& name, const QString& tip) {
+QToolButton* button(QHBoxLayout* row, const QString& name) {
   auto* made = new QToolButton;
   made->setAccessibleName(name);
-  made->setToolTip(tip);
   made->setFocusPolicy(Qt::TabFocus);  // a click leaves the keys with the view
   row->addWidget(made);
   return made;
@@ -82,6 +82,7 @@ QIcon iconOf(Sign sign) {
 TimelinePanel::TimelinePanel(ProjectModel& model, Player& player, QWidget* parent)
     : QWidget(parent), model_(model), player_(player), lanes_(new TimelineLanes), scroll_(new LaneScroll) {
   scroll_->setWidgetResizable(true);
+  scroll_->setFrameShape(QFrame::NoFrame);
   scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   scroll_->setFocusPolicy(Qt::NoFocus);
   scroll_->setWidget(lanes_);
@@ -97,19 +98,20 @@ TimelinePanel::TimelinePanel(ProjectModel& model, Player& player, QWidget* paren
 
 QHBoxLayout* TimelinePanel::makeTransport() {
   auto* row = new QHBoxLayout;
-  row->setContentsMargins(8, 4, 8, 2);
-  row->setSpacing(4);
+  row->setContentsMargins(kSides / 2, 4, kSides / 2, 2);
+  row->setSpacing(kSpacing);
   const auto act = [this](QToolButton* b, auto slot) { connect(b, &QToolButton::clicked, this, slot); };
-  to_in_ = button(row, "To the in point", "To the in point (Home)");
-  act(to_in_, [this] { player_.goTo(player_.range().first); });
-  back_ = button(row, "Previous frame", "Previous frame (left arrow, or comma)");
+  QToolButton* to_in =
+      foldable(row, to_in_, "To the in point", [this] { player_.goTo(player_.range().first); });
+  back_ = button(row, "Previous frame");
   act(back_, [this] { player_.step(-1); });
-  play_ = button(row, "Play or pause", "Play or pause (Space)");
+  play_ = button(row, "Play or pause");
   act(play_, [this] { player_.toggle(); });
-  next_ = button(row, "Next frame", "Next frame (right arrow, or full stop)");
+  next_ = button(row, "Next frame");
   act(next_, [this] { player_.step(1); });
-  to_out_ = button(row, "To the out point", "To the out point (End)");
-  act(to_out_, [this] { player_.goTo(player_.range().last); });
+  QToolButton* to_out =
+      foldable(row, to_out_, "To the out point", [this] { player_.goTo(player_.range().last); });
+  for (QToolButton* with_icon : {to_in, back_, play_, next_, to_out}) with_icon->setObjectName("icon");
   makePoints(row);
   where_ = new ElidedLabel;
   where_->setObjectName("quiet");
@@ -126,27 +128,28 @@ QHBoxLayout* TimelinePanel::makeTransport() {
   return row;
 }
 
-// In, out and loop: buttons where there is room for them, else entries of the menu at the end.
+// A button where there is room for it, else an entry of the menu at the end.
+QToolButton* TimelinePanel::foldable(QHBoxLayout* row, QAction*& action, const QString& text,
+                                     std::function<void()> act) {
+  action = new QAction(text, this);
+  connect(action, &QAction::triggered, this, std::move(act));
+  QToolButton* shown = button(row, text);
+  shown->setDefaultAction(action);
+  foldable_.push_back(shown);
+  return shown;
+}
+
 void TimelinePanel::makePoints(QHBoxLayout* row) {
-  const auto action = [this](const QString& text, auto slot) {
-    auto* made = new QAction(text, this);
-    connect(made, &QAction::triggered, this, slot);
-    return made;
-  };
-  loop_ = action("Loop", [this] { player_.setLoop(loop_->isChecked()); });
+  foldable(row, in_, "In", [this] { player_.setIn(model_.frame().value); });
+  foldable(row, out_, "Out", [this] { player_.setOut(model_.frame().value); });
+  foldable(row, loop_, "Loop", [this] { player_.setLoop(loop_->isChecked()); });
   loop_->setCheckable(true);
-  in_ = action("In", [this] { player_.setIn(model_.frame().value); });
-  out_ = action("Out", [this] { player_.setOut(model_.frame().value); });
-  whole_ = action("All", [this] { player_.clearRange(); });
+  foldable(row, whole_, "All", [this] { player_.clearRange(); });
   more_ = new QToolButton;
-  for (QAction* made : {loop_, in_, out_, whole_}) {
-    QToolButton* shown = button(row, made->text(), {});
-    shown->setDefaultAction(made);
-    foldable_.push_back(shown);
-  }
+  more_->setObjectName("icon");
   more_->setText("…");
   more_->setAccessibleName("More of the transport");
-  more_->setToolTip("Loop, in and out points");
+  more_->setToolTip("In and out points, loop");
   more_->setPopupMode(QToolButton::InstantPopup);
   more_->setFocusPolicy(Qt::TabFocus);
   more_->setMenu(new QMenu(more_));
@@ -179,29 +182,35 @@ void TimelinePanel::connectModel() {
     connect(&player_, signal, this, &TimelinePanel::showState);
 }
 
+// Everything that can fold is folded.
 QSize TimelinePanel::minimumSizeHint() const {
-  // Everything that can fold is folded.
-  int width = 2 * 8 + more_->sizeHint().width() + curves_->minimumSizeHint().width() +
-              where_->minimumSizeHint().width();
-  for (const QToolButton* kept : {to_in_, back_, play_, next_, to_out_}) width += kept->sizeHint().width();
-  return {width + 8 * 4, QWidget::minimumSizeHint().height()};
+  int width = kSides + more_->sizeHint().width() + curves_->minimumSizeHint().width() +
+              where_->minimumSizeHint().width() + 2 * kSpacing;
+  for (const QToolButton* kept : {back_, play_, next_}) width += kept->sizeHint().width() + kSpacing;
+  return {width, QWidget::minimumSizeHint().height()};
 }
 
-// From the end of the row; words and curve keep their least room.
+// What does not fit goes into the menu; what is left over goes to the name of the curve and to the words.
 void TimelinePanel::fold() {
-  int room = width() - (minimumSizeHint().width() - more_->sizeHint().width());
-  int all = 0;
-  for (const QToolButton* shown : foldable_) all += shown->sizeHint().width() + 4;
+  const int menu = more_->sizeHint().width();
+  int room = width() - minimumSizeHint().width() + menu, all = 0;
+  for (const QToolButton* shown : foldable_) all += shown->sizeHint().width() + kSpacing;
   const bool folds = all > room;
-  if (folds) room -= more_->sizeHint().width();
+  if (folds) room -= menu;
   more_->menu()->clear();
+  bool full = false;
   for (QToolButton* shown : foldable_) {
-    room -= shown->sizeHint().width() + 4;
-    const bool fits = !folds || room >= 0;
-    shown->setVisible(fits);
-    if (!fits) more_->menu()->addAction(shown->defaultAction());
+    const int wanted = shown->sizeHint().width() + kSpacing;
+    full = full || wanted > room;
+    if (!full) room -= wanted;
+    shown->setVisible(!full);
+    if (full) more_->menu()->addAction(shown->defaultAction());
   }
   more_->setVisible(folds);
+  const int least = curves_->minimumSizeHint().width();
+  const int name = fontMetrics().horizontalAdvance(curves_->currentText()) + 3 * fontMetrics().height();
+  curves_->setFixedWidth(std::clamp(name, least, least + std::max(0, room / 2)));
+  layout()->activate();  // not a moment with the old row at the new width
 }
 
 // The lanes insist on their height up to a share of the window; where that is low they scroll.
@@ -220,6 +229,7 @@ void TimelinePanel::resizeEvent(QResizeEvent* event) {
 void TimelinePanel::showEvent(QShowEvent* event) {
   QWidget::showEvent(event);
   window()->installEventFilter(this);
+  fold();
   fitHeight();
 }
 
@@ -243,7 +253,7 @@ void TimelinePanel::showIcons() {
   next_->setIcon(iconOf(Sign::Next));
   to_out_->setIcon(iconOf(Sign::Last));
   const int side = fontMetrics().height();
-  for (QToolButton* with_icon : {to_in_, back_, play_, next_, to_out_}) with_icon->setIconSize({side, side});
+  for (QToolButton* with_icon : findChildren<QToolButton*>("icon")) with_icon->setIconSize({side, side});
 }
 
 bool TimelinePanel::handleKey(const QKeyEvent& event) {
@@ -296,6 +306,7 @@ void TimelinePanel::showCurve() {
   curves_->setToolTip(curves_->count() < 2 ? "There are no curves yet: they come with the first result"
                       : any                ? curves_->currentText() + "\nPress the curve to go to a frame"
                                            : "The curve below the lanes; press it to go to a frame");
+  fold();
 }
 
 // What was asked for is in view, once the lanes have their new height.

@@ -5,6 +5,7 @@
 
 #include <QWidget>
 
+#include <functional>
 #include <vector>
 
 #include "ui/player.h"
@@ -46,6 +47,7 @@ class TimelinePanel final : public QWidget {
 
  private:
   QHBoxLayout* makeTransport();
+  QToolButton* foldable(QHBoxLayout* row, QAction*& action, const QString& text, std::function<void()> act);
   void makePoints(QHBoxLayout* row);
   void connectModel();
   void fold();
@@ -61,7 +63,8 @@ class TimelinePanel final : public QWidget {
   Player& player_;
   TimelineLanes* lanes_;
   QScrollArea* scroll_ = nullptr;
-  QToolButton *to_in_ = nullptr, *back_ = nullptr, *play_ = nullptr, *next_ = nullptr, *to_out_ = nullptr;
+  QToolButton *back_ = nullptr, *play_ = nullptr, *next_ = nullptr;
+  QAction *to_in_ = nullptr, *to_out_ = nullptr;
   QAction *loop_ = nullptr, *in_ = nullptr, *out_ = nullptr, *whole_ = nullptr;
   std::vector<QToolButton*> foldable_;  // the first is the last to go
   QToolButton* more_ = nullptr;         // what is folded away
