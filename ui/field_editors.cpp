@@ -235,11 +235,6 @@ class TextEditor final : public FieldEditor {
 
 }  // namespace
 
-void FieldEditor::keyPressEvent(QKeyEvent* event) {
-  if (!isReturn(*event)) return QWidget::keyPressEvent(event);
-  event->accept();
-}
-
 FieldEditor* makeFieldEditor(const Field& field, QWidget* parent) {
   if (std::holds_alternative<bool>(field.value)) return new BoolEditor(field, parent);
   if (!field.info.choices.empty()) return new ChoiceEditor(field, parent);

@@ -31,10 +31,6 @@ class FieldEditor : public QWidget {
  Q_SIGNALS:
   void edited(const beam::FieldValue& value);
   void refused(const QString& why);  // empty: the trouble is over
-
- protected:
-  // Return stays here: in the window it would look through a camera.
-  void keyPressEvent(QKeyEvent* event) override;
 };
 
 FieldEditor* makeFieldEditor(const Field& field, QWidget* parent = nullptr);

@@ -41,6 +41,7 @@ FieldRow::FieldRow(const Field& field, QWidget* parent)
       editor_(makeFieldEditor(field, this)),
       reset_(new QToolButton(this)) {
   label_->setWordWrap(true);
+  label_->setBuddy(editor_->focusProxy());
   QSizePolicy policy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   policy.setHeightForWidth(true);
   setSizePolicy(policy);

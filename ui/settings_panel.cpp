@@ -3,6 +3,7 @@
 
 #include <QComboBox>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QScrollArea>
 #include <QStackedWidget>
@@ -206,6 +207,11 @@ void SettingsPanel::refreshForm() {
 void SettingsPanel::resetAll() {
   form_->restore();
   for (const std::string& name : form_->changedNames()) model_.reset(name);
+}
+
+void SettingsPanel::keyPressEvent(QKeyEvent* event) {
+  if (event->key() != Qt::Key_Return && event->key() != Qt::Key_Enter) return QWidget::keyPressEvent(event);
+  event->accept();
 }
 
 QString SettingsPanel::note() const { return note_->words(); }

@@ -41,6 +41,10 @@ class SettingsPanel final : public QWidget {
  Q_SIGNALS:
   void attentionWanted();  // what is wrong is to be seen
 
+ protected:
+  // Return stays here, whatever has the focus: in the window it would look through a camera.
+  void keyPressEvent(QKeyEvent* event) override;
+
  private:
   QWidget* makeHead();
   QWidget* makeStagePage();

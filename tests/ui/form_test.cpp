@@ -176,8 +176,6 @@ TEST_F(Form, KeepsReturnAndEscapeFromTheWindow) {
   EXPECT_EQ(field.text(), "30");
   EXPECT_FALSE(field.property("wrong").toBool());
   EXPECT_TRUE(form.trouble().isEmpty());
-  QTest::keyClick(form.editor("careful")->findChild<QCheckBox*>(), Qt::Key_Return);
-  QTest::keyClick(form.editor("solver")->findChild<QComboBox*>(), Qt::Key_Return);
   EXPECT_TRUE(host.keys.empty());
 }
 
@@ -461,6 +459,19 @@ TEST_F(Settings, CanBeReadButNotChangedInAReadOnlyProject) {
       EXPECT_FALSE(row->findChild<QToolButton*>()->isEnabled());
   }
   fs::permissions(project, fs::perms::owner_write, fs::perm_options::add);
+}
+
+TEST_F(Settings, KeepReturnFromTheWindowWhateverHasTheFocus) {
+  ASSERT_TRUE(openCapture());
+  QApplication::processEvents();
+  std::set<QWidget*> visited;
+  line("surface.iterations").setFocus();
+  while (visited.insert(QApplication::focusWidget()).second) {
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Return);
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+  }
+  EXPECT_GT(visited.size(), 10u) << "fields, boxes and buttons of the stage";
+  EXPECT_TRUE(host.keys.empty());
 }
 
 TEST_F(Settings, CountWhatDiffersFromThePresetAndPutItAllBack) {
