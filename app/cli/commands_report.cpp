@@ -11,6 +11,7 @@
 #include "app/cli/evaluate_over_time.h"
 #include "app/cli/report_page.h"
 #include "core/base/error.h"
+#include "core/base/json_words.h"
 #include "core/base/log.h"
 #include "core/io/file.h"
 
@@ -87,7 +88,8 @@ std::vector<std::pair<std::string, std::map<std::string, double>>> evaluationOf(
       if (!row.empty()) table.emplace_back(map, std::move(row));
     }
   } catch (const nlohmann::json::exception& e) {
-    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(), e.what());
+    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(),
+               jsonComplaint(e));
   }
   return table;
 }
@@ -115,7 +117,8 @@ void addEvaluatedFrames(const Project& project, QualityHistory& history) {
         if (isDrawn(name)) addScore(history, frame, name, value.template get<double>());
     }
   } catch (const nlohmann::json::exception& e) {
-    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(), e.what());
+    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(),
+               jsonComplaint(e));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/json_words.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
@@ -212,7 +213,8 @@ GroundTruth openGroundTruth(const fs::path& folder) {
                   strings(j, "relight_environments")};
     return t;
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\" cannot be understood: {}", file.string(), e.what()));
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" cannot be understood: {}", file.string(), jsonComplaint(e)));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/base/json_words.h"
 #include "core/io/file.h"
 
 namespace beam {
@@ -51,7 +52,8 @@ nlohmann::json readJson(const std::filesystem::path& path) {
   try {
     return nlohmann::json::parse(quoteNonNumbers(text));
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\" is no valid JSON: {}", path.string(), e.what()));
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" is no valid JSON: {}", path.string(), jsonComplaint(e)));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/json_words.h"
 
 namespace beam {
 
@@ -26,8 +27,8 @@ auto withJsonErrors(const std::filesystem::path& path, Body&& body) {
   try {
     return body();
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data,
-                fmt::format("\"{}\": a value has another type than expected: {}", path.string(), e.what()));
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": a value has another type than expected: {}",
+                                               path.string(), jsonComplaint(e)));
   }
 }
 

@@ -88,9 +88,11 @@ void Job::runAll(const RunRequest& request) {
   arrangeTakes(project_, request);
   const RunPlan plan = makeRunPlan(project_, request);
   finished_.notes = plan.notes;
-  const StageRegistry& stages = project_.setup().stages;
-  for (const std::string& step : plan.project_steps) weight_total_ += stages.step(step).weight;
-  for (const Turn& turn : plan.turns) weight_total_ += weightOf(plan, turn);
+  left_.know(request.times);
+  for (const std::string& step : plan.project_steps) expect(step, std::nullopt);
+  for (const Turn& turn : plan.turns) {
+    for (const std::string& step : stepsOf(plan, turn)) expect(step, turn);
+  }
   runProjectSteps(plan);
   runFrames(plan);
 }
@@ -135,7 +137,7 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
   bool failed = false;
   for (const std::string& step : stepsOf(plan, turn)) {
     if (failed) {
-      weight_total_ -= project_.setup().stages.step(step).weight;
+      drop(step, turn);
       continue;
     }
     try {
@@ -147,7 +149,7 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
     } catch (const Error& e) {
       if (!spoilsOneFrameOnly(e.kind())) throw;
       failFrame(refTo(step, turn), e.what());
-      weight_total_ -= weight_now_;
+      drop(step, turn);
       failed = true;
     }
   }
@@ -169,7 +171,7 @@ Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
   const Digest key = keyOf(ingredients);
   weight_now_ = info.weight;
   const auto reuse = [&] {
-    weight_total_ -= weight_now_;
+    drop(step, turn);
     acknowledge(now_, key, true, 0);
     return Ended::Reused;
   };
@@ -228,19 +230,36 @@ void Job::splitTakeAt(const RunPlan& plan, const Turn& turn) {
   const FrameIndex before = *take.before(turn.frame);
   logWarning("frame {} begins a new take: frame {}, on which it would build, has no result",
              refTo({}, turn).frame_name, refTo({}, Turn{before, before}).frame_name);
-  weight_total_ -= weightOf(plan, turn);
+  for (const std::string& step : stepsOf(plan, turn)) {
+    if (acknowledged_.contains({step, turn})) {
+      weight_total_ -= project_.setup().stages.step(step).weight;
+    } else {
+      drop(step, turn);
+    }
+  }
   project_.splitTake(take, turn.frame);
-  weight_total_ += weightOf(plan, turn);
+  for (const std::string& step : stepsOf(plan, turn)) expect(step, turn);
   for (const std::string& step : plan.frame_steps) {
     if (acknowledged_.erase({step, turn}) > 0)
       weight_total_ += project_.setup().stages.step(step).weight;  // to be done once more
   }
 }
 
-double Job::weightOf(const RunPlan& plan, const Turn& turn) const {
-  double sum = 0;
-  for (const std::string& step : stepsOf(plan, turn)) sum += project_.setup().stages.step(step).weight;
-  return sum;
+StepKind Job::kindOf(const std::string& step, std::optional<Turn> turn) const {
+  const bool later =
+      turn && takeOf(*turn).before(turn->frame) && !project_.setup().stages.step(step).later.empty();
+  return {step, later, settingsDigest(project_.parametersOf(step, later))};
+}
+
+void Job::expect(const std::string& step, std::optional<Turn> turn) {
+  const double weight = project_.setup().stages.step(step).weight;
+  weight_total_ += weight;
+  left_.expect(kindOf(step, turn), weight);
+}
+
+void Job::drop(const std::string& step, std::optional<Turn> turn) {
+  weight_total_ -= project_.setup().stages.step(step).weight;
+  left_.drop(kindOf(step, turn));
 }
 
 void Job::computeWithin(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key) {
@@ -269,6 +288,7 @@ FrameStore* Job::picturesFor(FrameIndex frame) {
 
 void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key) {
   if (!log_) log_ = std::make_unique<SessionLog>(project_.folder());
+  if (!std::exchange(records_read_, true)) left_.know(readStepTimes(project_));
   step_started_ = Clock::now();
   {
     std::lock_guard lock(warnings_mutex_);
@@ -288,6 +308,7 @@ void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const D
   logInfo("{}{} done in {:.1f} s", ref.step, ref.frame ? ", frame " + ref.frame_name : std::string(),
           seconds);
   weight_done_ += weight_now_;
+  left_.finish(kindOf(ref.step, turn_), weight_now_, seconds);
   last_ = ref;
   met_.reset();
   waits_told_.reset();
@@ -373,11 +394,12 @@ void Job::reportProgress(const StepRef& ref, const ProgressReport& report) {
   const double worked = weight_done_ + weight_now_ * report.fraction;
   event.job_fraction = weight_total_ > 0 ? worked / weight_total_ : 0;
   event.seconds_elapsed = secondsSince(started_);
-  // Early guesses mislead more than they help.
-  if (event.job_fraction > 0.01 && event.seconds_elapsed > 2) {
-    event.seconds_left = event.seconds_elapsed * (1 - event.job_fraction) / event.job_fraction;
-  }
   const double in_step = secondsSince(step_started_);
+  if (const auto left = left_.left(kindOf(ref.step, turn_), report.fraction, in_step)) {
+    event.seconds_left = left->likely;
+    event.seconds_left_low = left->low;
+    event.seconds_left_high = left->high;
+  }
   if (report.done > 0 && in_step > 0.5) event.rate = static_cast<double>(report.done) / in_step;
   tell_(std::move(event));
 }

@@ -20,6 +20,7 @@
 #include "core/pipeline/project.h"
 #include "core/pipeline/run_plan.h"
 #include "core/pipeline/session_log.h"
+#include "core/pipeline/step_times.h"
 #include "core/pipeline/stop_wishes.h"
 
 namespace beam {
@@ -57,7 +58,10 @@ class Job {
   Take takeOf(const Turn& turn) const { return project_.takeOf(turn.of); }
   bool awaitsFrameBefore(const Turn& turn) const;
   std::vector<std::string> stepsOf(const RunPlan& plan, const Turn& turn) const;
-  double weightOf(const RunPlan& plan, const Turn& turn) const;
+  StepKind kindOf(const std::string& step, std::optional<Turn> turn) const;
+  // Into the sums of what is to do, and out of them again when it will not be computed.
+  void expect(const std::string& step, std::optional<Turn> turn);
+  void drop(const std::string& step, std::optional<Turn> turn);
   void compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
   void build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record);
   std::filesystem::path resultOf(const std::string& step, const Digest& key, const StepRef& reader) const;
@@ -85,6 +89,8 @@ class Job {
   JobFinished finished_;
   Clock::time_point started_ = Clock::now(), step_started_ = started_;
   double weight_total_ = 0, weight_done_ = 0, weight_now_ = 0;
+  TimeLeft left_;
+  bool records_read_ = false;
   std::set<std::pair<std::string, std::optional<Turn>>> acknowledged_, stages_told_;  // by step, by stage
   std::set<Turn> pending_;                  // what this run has not finished
   std::map<Turn, Digest> waits_for_;        // the result of the frame before that each busy one lacked

@@ -30,11 +30,12 @@ struct StageStarted {
 
 struct StepProgress {
   StepRef ref;
-  ProgressReport report;       // of this step
-  double job_fraction = 0;     // of the whole run, [0, 1]
-  double seconds_elapsed = 0;  // of the whole run
-  double seconds_left = -1;    // of the whole run, estimated; < 0: not known yet
-  double rate = 0;             // report.done a second; 0: not known yet
+  ProgressReport report;                                 // of this step
+  double job_fraction = 0;                               // of the whole run, [0, 1]
+  double seconds_elapsed = 0;                            // of the whole run
+  double seconds_left = -1;                              // of the whole run, estimated; < 0: not known yet
+  double seconds_left_low = -1, seconds_left_high = -1;  // between these it is likely to be
+  double rate = 0;                                       // report.done a second; 0: not known yet
 };
 
 // Sent after the result is on disk for good: what is acknowledged here survives a kill.

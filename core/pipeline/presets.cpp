@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
+#include "core/base/json_words.h"
 #include "core/io/file.h"
 
 namespace beam {
@@ -39,7 +40,8 @@ std::map<std::string, FieldValue> loadPreset(const std::filesystem::path& folder
     const auto json = nlohmann::ordered_json::parse(readTextFile(file));
     for (const auto& [key, value] : json.items()) values[key] = parseFieldValue(value.dump());
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\" cannot be understood: {}", file.string(), e.what()));
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" cannot be understood: {}", file.string(), jsonComplaint(e)));
   }
   return values;
 }

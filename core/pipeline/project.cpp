@@ -6,26 +6,18 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <random>
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/io/file.h"
 #include "core/pipeline/lost_capture.h"
 #include "core/pipeline/presets.h"
+#include "core/pipeline/project_history.h"
 
 namespace beam {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDocumentFile = "project.json";
-
-std::string newId() {
-  std::random_device device;
-  std::string id;
-  for (int i = 0; i < 4; ++i) id += fmt::format("{:08x}", device());
-  return id;
-}
 
 // Whether a project can be made there. What a killed attempt to make one left behind does not count.
 bool isFree(const fs::path& folder) {
@@ -53,14 +45,17 @@ Project::Project(fs::path folder, ProjectDocument document, std::shared_ptr<cons
       inputs_(std::make_shared<InputDigests>()) {}
 
 Project Project::open(const fs::path& folder, std::shared_ptr<const PipelineSetup> setup) {
+  if (!isProject(folder) && looksLikeProject(folder)) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" is a project that has lost its project.json; {}",
+                                               folder.string(), historyAdvice(folder)));
+  }
   if (!isProject(folder)) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\" is no project: it has no project.json; make one with: beam new "
                             "\"{}\" --capture FOLDER",
                             folder.string(), folder.string()));
   }
-  const fs::path file = folder / kDocumentFile;
-  return Project(folder, parseProjectDocument(readTextFile(file), file.string()), std::move(setup));
+  return Project(folder, readProjectDocument(folder), std::move(setup));
 }
 
 Project Project::create(const fs::path& folder, const ProjectDocument& document,
@@ -72,7 +67,7 @@ Project Project::create(const fs::path& folder, const ProjectDocument& document,
                             folder.string()));
   }
   Project project(folder, document, std::move(setup));
-  if (project.document_.id.empty()) project.document_.id = newId();
+  if (project.document_.id.empty()) project.document_.id = newProjectId();
   project.preset();  // refuses unknown ones
   return project;
 }
@@ -190,6 +185,7 @@ std::vector<std::string> Project::presetNames() const { return presetNamesIn(set
 void Project::setCapture(const fs::path& capture) {
   document_.capture = referenceTo(capture, folder_);
   document_.capture_files = describeCapture(capture);
+  without_capture_ = false;
   forgetCapture();
 }
 
@@ -280,7 +276,6 @@ void Project::relocateCapture(const fs::path& folder, bool other_too) {
                 fmt::format("\"{}\" is another capture than that of \"{}\", which was at \"{}\": {}",
                             folder.string(), folder_.string(), document_.capture.absolute, other));
   }
-  without_capture_ = false;
   setCapture(folder);
 }
 

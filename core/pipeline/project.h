@@ -107,6 +107,8 @@ class Project {
   // Those that are in project.json now; a project that is read-only or not on disk keeps its own.
   void readTakesAgain();
   void adoptTakes(const Project& other);
+  // A copy whose takes change in memory alone.
+  Project sketch() const;
 
   // --- Steps. `step` is a full id; `frame` is ignored for steps that serve the whole project. A frame is
   // seen as a member of the take that owns it, or of the one that is named. ---
@@ -121,6 +123,8 @@ class Project {
   Digest key(std::string_view step, FrameIndex frame) const;
   Digest key(std::string_view step, const Take& take, FrameIndex frame) const;
   void forgetKeys() const { memo_.clear(); }
+  // What of the settings in force enters the key of the step: full name -> value.
+  const std::map<std::string, std::string>& parametersOf(const std::string& step, bool later) const;
   // Whether the frame has no result yet of one of the steps. Keeps no keys: before its turn its files may
   // change.
   bool lacksAny(const std::vector<std::string>& steps, const Take& take, FrameIndex frame) const;
@@ -146,7 +150,6 @@ class Project {
   bool savesTakes() const;
   Digest keyAt(const std::string& step, const Take& take, FrameIndex frame) const;
   void keepKeysBefore(const std::string& step, const Take& take, FrameIndex frame) const;
-  const std::map<std::string, std::string>& parametersOf(const std::string& step, bool later) const;
   const std::vector<std::string>& chainOf(const std::string& step) const;
 
   std::filesystem::path folder_;
@@ -158,7 +161,7 @@ class Project {
   mutable std::shared_ptr<const ImportedCapture> imported_;
   mutable std::shared_ptr<const InputDigests> inputs_;
   mutable KeyMemo memo_;
-  bool without_capture_ = false;
+  bool without_capture_ = false, sketch_ = false;
 };
 
 }  // namespace beam

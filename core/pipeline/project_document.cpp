@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/project_document.h"
 
+#define JSON_DIAGNOSTICS 1  // complaints name the member
+#include <nlohmann/json.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
+#include <random>
 #include <thread>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
+#include "core/base/json_words.h"
 #include "core/io/file.h"
 #include "core/pipeline/file_digest.h"
 #include "core/pipeline/file_lock.h"
@@ -46,17 +51,6 @@ void readTakes(const Json& j, ProjectDocument& document) {
   }
 }
 
-void checkFormat(const Json& j, std::string_view where) {
-  const int major = j.at("format").at("major").get<int>();
-  if (major > kMajor) {
-    throw Error(
-        Error::Kind::Data,
-        fmt::format("\"{}\" has project format {}.x, this program reads up to {}.x; open it with a newer "
-                    "BEAM Studio",
-                    where, major, kMajor));
-  }
-}
-
 fs::path nextHistoryFile(const fs::path& history) {
   std::vector<fs::path> kept;
   for (const auto& entry : fs::directory_iterator(history)) {
@@ -66,18 +60,6 @@ fs::path nextHistoryFile(const fs::path& history) {
   const int last = kept.empty() ? 0 : std::atoi(kept.back().stem().c_str());
   for (std::size_t i = 0; i + kKept <= kept.size(); ++i) fs::remove(kept[i]);
   return history / fmt::format("{:08}.json", last + 1);
-}
-
-FileLock lockProject(const fs::path& project) {
-  using namespace std::chrono_literals;
-  for (int attempt = 0; attempt < 40; ++attempt) {
-    if (std::optional<FileLock> lock = FileLock::tryAcquire(project / "LOCK")) return std::move(*lock);
-    std::this_thread::sleep_for(50ms);
-  }
-  throw Error(Error::Kind::Locked,
-              fmt::format("\"{}\" is being written by another program ({}); try again when it is "
-                          "done",
-                          project.string(), FileLock::holderOf(project / "LOCK")));
 }
 
 // Whether the file says the same; afterwards `document` has its takes. A damaged file is to be replaced.
@@ -104,7 +86,45 @@ void writeLocked(const fs::path& project, const ProjectDocument& document) {
   writeFileAtomically(project / "project.json", text);
 }
 
+ProjectDocument documentOf(Json j) {
+  ProjectDocument document;
+  document.id = j.at("id").get<std::string>();
+  readCapture(j.at("capture"), document);
+  if (j.contains("environment")) document.environment = parseReference(j["environment"]);
+  if (j.contains("hold_out")) document.hold_out = j["hold_out"].get<std::vector<std::string>>();
+  if (j.contains("up")) document.up = parseUpAxis(j["up"].get<std::string>());
+  document.preset = j.at("preset").get<std::string>();
+  for (const auto& [key, value] : j.at("settings").items())
+    document.settings[key] = parseFieldValue(value.dump());
+  if (j.contains("takes")) readTakes(j["takes"], document);
+  for (const char* known :
+       {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings", "takes"}) {
+    j.erase(known);
+  }
+  document.unknown = j.dump();
+  return document;
+}
+
 }  // namespace
+
+std::string newProjectId() {
+  std::random_device device;
+  std::string id;
+  for (int i = 0; i < 4; ++i) id += fmt::format("{:08x}", device());
+  return id;
+}
+
+FileLock lockProject(const fs::path& project) {
+  using namespace std::chrono_literals;
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    if (std::optional<FileLock> lock = FileLock::tryAcquire(project / "LOCK")) return std::move(*lock);
+    std::this_thread::sleep_for(50ms);
+  }
+  throw Error(Error::Kind::Locked,
+              fmt::format("\"{}\" is being written by another program ({}); try again when it is "
+                          "done",
+                          project.string(), FileLock::holderOf(project / "LOCK")));
+}
 
 UpAxis parseUpAxis(std::string_view text) {
   if (text == "+Y" || text == "Y" || text == "y") return UpAxis::PlusY;
@@ -199,31 +219,25 @@ std::string toJson(const ProjectDocument& document) {
 }
 
 ProjectDocument parseProjectDocument(std::string_view json, std::string_view where) {
+  const auto broken = [&](const std::string& why) {
+    return BrokenDocument(fmt::format("\"{}\" is broken: {}", where, why));
+  };
+  if (json.find_first_not_of(" \t\r\n") == std::string_view::npos) throw broken("it is empty");
+  int major = 0;
   try {
     Json j = Json::parse(json);
-    checkFormat(j, where);
-    ProjectDocument document;
-    document.id = j.at("id").get<std::string>();
-    readCapture(j.at("capture"), document);
-    if (j.contains("environment")) document.environment = parseReference(j["environment"]);
-    if (j.contains("hold_out")) document.hold_out = j["hold_out"].get<std::vector<std::string>>();
-    if (j.contains("up")) document.up = parseUpAxis(j["up"].get<std::string>());
-    document.preset = j.at("preset").get<std::string>();
-    for (const auto& [key, value] : j.at("settings").items())
-      document.settings[key] = parseFieldValue(value.dump());
-    if (j.contains("takes")) readTakes(j["takes"], document);
-    for (const char* known :
-         {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings", "takes"}) {
-      j.erase(known);
-    }
-    document.unknown = j.dump();
-    return document;
+    major = j.at("format").at("major").get<int>();
+    if (major <= kMajor) return documentOf(std::move(j));
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data,
-                fmt::format("\"{}\" cannot be understood: {}; an earlier version of it is in "
-                            "history/",
-                            where, e.what()));
+    throw broken(jsonComplaint(e));
+  } catch (const Error& e) {
+    throw broken(e.what());
   }
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("\"{}\" has project format {}.x, this program reads up to {}.x; open it with a newer "
+                  "BEAM Studio",
+                  where, major, kMajor));
 }
 
 bool isSaved(const fs::path& project, const ProjectDocument& document) {

@@ -11,8 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/fields.h"
 #include "core/base/hash.h"
+#include "core/pipeline/file_lock.h"
 #include "core/pipeline/takes.h"
 #include "core/scene/capture.h"
 
@@ -55,9 +57,21 @@ struct ProjectDocument {
 // As toText writes it; throws Error{Usage}.
 UpAxis parseUpAxis(std::string_view text);
 
+// Its text is not what it should be; of a text of a newer program, which is not broken, a plain Error.
+class BrokenDocument : public Error {
+ public:
+  explicit BrokenDocument(const std::string& message) : Error(Kind::Data, message) {}
+};
+
 std::string toJson(const ProjectDocument& document);
-// Throws Error{Data} naming `where`; refuses a newer major format and says which program is needed.
+// Throws BrokenDocument that names `where` and the place in it; refuses a newer major format and says which
+// program is needed.
 ProjectDocument parseProjectDocument(std::string_view json, std::string_view where);
+
+std::string newProjectId();
+
+// For the moment of a change of project.json. Throws Error{Locked} that names the holder when it stays taken.
+FileLock lockProject(const std::filesystem::path& project);
 
 // Whether project.json says what `document` says, takes apart.
 bool isSaved(const std::filesystem::path& project, const ProjectDocument& document);

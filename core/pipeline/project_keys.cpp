@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/io/file.h"
 #include "core/pipeline/project.h"
+#include "core/pipeline/project_history.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -28,7 +28,13 @@ Take Project::takeOf(FrameIndex frame) const {
   return known ? owners[static_cast<std::size_t>(frame.value)] : Take{frame, frame, 1};
 }
 
-bool Project::savesTakes() const { return !readOnly() && isProject(folder_); }
+bool Project::savesTakes() const { return !sketch_ && !readOnly() && isProject(folder_); }
+
+Project Project::sketch() const {
+  Project copy = *this;
+  copy.sketch_ = true;
+  return copy;
+}
 
 void Project::changeTakes(const std::function<std::vector<Take>(std::vector<Take>)>& change) {
   const std::vector<std::string>& frames = capture().frames;
@@ -50,8 +56,7 @@ void Project::splitTake(const Take& take, FrameIndex frame) {
 
 void Project::readTakesAgain() {
   if (!savesTakes()) return;
-  const fs::path file = folder_ / "project.json";
-  document_.takes = parseProjectDocument(readTextFile(file), file.string()).takes;
+  document_.takes = readProjectDocument(folder_).takes;
   memo_.clear();
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_words.h"
 
 namespace beam {
 namespace {
@@ -29,7 +30,7 @@ auto parsed(std::string_view what, std::string_view json, Body&& body) {
   try {
     return body(Json::parse(json));
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Error::Kind::Data, fmt::format("{} cannot be understood: {}", what, e.what()));
+    throw Error(Error::Kind::Data, fmt::format("{} cannot be understood: {}", what, jsonComplaint(e)));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/pipeline/project.h"
+#include "core/pipeline/step_times.h"
 
 namespace beam {
 
@@ -22,6 +23,8 @@ struct RunRequest {
   std::optional<int> segment_frames = {};
   // Of new takes: frames solved before their first; absent: the setting track.overlap.
   std::optional<int> overlap = {};
+  // Measured before, for the time that is left; what the project's own records say is added.
+  StepTimes times = {};
 };
 
 // A frame whose turn it is in a run.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_words.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/stages/unclear_file.h"
@@ -106,7 +107,7 @@ std::vector<ViewScore> readScores(const fs::path& folder) {
     }
     return scores;
   } catch (const nlohmann::json::exception& e) {
-    throw unclearFile(file, e.what());
+    throw unclearFile(file, jsonComplaint(e));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_words.h"
 #include "core/io/file.h"
 #include "core/stages/unclear_file.h"
 
@@ -70,7 +71,7 @@ FrameScreening readScreening(const fs::path& folder) {
     return {j.at("enabled").get<bool>(), j.at("cameras").get<std::size_t>(), viewsOf(j.at("left_out")),
             viewsOf(j.at("suspects"))};
   } catch (const nlohmann::json::exception& e) {
-    throw unclearFile(file, e.what());
+    throw unclearFile(file, jsonComplaint(e));
   } catch (const Error& e) {
     throw unclearFile(file, e.what());
   }

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_words.h"
 #include "core/io/file.h"
 #include "core/stages/unclear_file.h"
 
@@ -25,7 +26,7 @@ TrackNote readTrackNote(const std::filesystem::path& folder) {
     const nlohmann::json json = nlohmann::json::parse(readTextFile(file));
     return {json.at("restarted").get<bool>(), json.at("reference_residual").get<double>()};
   } catch (const nlohmann::json::exception& e) {
-    throw unclearFile(file, e.what());
+    throw unclearFile(file, jsonComplaint(e));
   }
 }
 

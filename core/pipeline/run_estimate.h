@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run would have to do and about how long that takes, before it starts.
+#pragma once
+
+#include "core/pipeline/run_plan.h"
+
+namespace beam {
+
+struct RunEstimate {
+  int frames = 0, frames_total = 0;  // with something to compute; in the run
+  int steps_missing = 0, steps_total = 0;
+  double seconds_low = 0, seconds_high = 0;
+  bool measured = false;  // false: no step was ever timed here, the seconds say nothing
+};
+
+// Changes nothing, on disk or in `project`: the takes that the run would make are made in a copy. Looks at
+// the input files of every frame, so not for the window's thread. Throws like makeRunPlan.
+RunEstimate estimateRun(const Project& project, const RunRequest& request, const StepTimes& times);
+
+}  // namespace beam
