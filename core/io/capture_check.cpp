@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/base/error.h"
 #include "core/base/log.h"
@@ -20,10 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is repaired on the way is logged where it is repaired; the report lists it too.
+// What is repaired on the way is logged where it is repaired; the report lists it too. What other threads log
+// meanwhile is theirs.
 PanoramaCheck checkPanorama(const fs::path& path, std::vector<std::string>& warnings) {
-  const int token = addLogSink([&](const LogRecord& r) {
-    if (r.level == LogLevel::Warning) warnings.push_back(r.text);
+  const int token = addLogSink([&, own = std::this_thread::get_id()](const LogRecord& r) {
+    if (r.level == LogLevel::Warning && std::this_thread::get_id() == own) warnings.push_back(r.text);
   });
   const std::unique_ptr<const int, void (*)(const int*)> remove(&token,
                                                                 [](const int* t) { removeLogSink(*t); });
@@ -40,12 +42,13 @@ double coverageOf(const Image<std::uint8_t>& mask) {
 
 // Decodes the first picture that can be used, for its mask; looks at the others without decoding them: whole,
 // and of the calibrated size.
-CameraCheck checkCamera(const CaptureSet& set, std::size_t view, std::vector<std::string>& warnings) {
+CameraCheck checkCamera(const CaptureSet& set, std::size_t view, CameraCheck c,
+                        std::vector<std::string>& warnings, const Progress& progress) {
   const View& v = set.views[view];
-  CameraCheck c{v.name, v.split == Split::Test, v.camera.width, v.camera.height, v.camera.intrinsics};
   const ViewIndex index{static_cast<std::int32_t>(view)};
   for (std::size_t f = 0; f < set.frames.size(); ++f) {
     const FrameIndex frame{static_cast<std::int32_t>(f)};
+    if (progress.stopRequested()) return c;
     if (!set.source->has(index, frame)) continue;
     try {
       if (c.frames == 0) {
@@ -70,35 +73,6 @@ CameraCheck checkCamera(const CaptureSet& set, std::size_t view, std::vector<std
   return c;
 }
 
-CheckReport checkCapture(const fs::path& path, const ImportOptions& options) {
-  const ImportedCapture capture = openCapture(path, options);
-  const CaptureSet& set = capture.set;
-  CheckReport r;
-  r.kind = "capture";
-  r.layout = capture.layout;
-  r.up = toText(set.up);
-  r.frames = set.frames;
-  r.warnings = capture.warnings;
-  r.seed_points = set.seed_points.position_m.size();
-  r.cameras.resize(set.views.size());
-  std::vector<std::vector<std::string>> warnings(set.views.size());
-  parallelFor(set.views.size(), 1,
-              [&](std::size_t v, std::size_t) { r.cameras[v] = checkCamera(set, v, warnings[v]); });
-  for (const auto& w : warnings) r.warnings.insert(r.warnings.end(), w.begin(), w.end());
-  if (set.masks == MaskKind::None)
-    r.warnings.push_back("no masks: there will be no visual hull and no mask loss");
-  if (!set.environment_file) {
-    r.warnings.push_back("no panorama (environment.exr or .hdr): the run stops after Surface");
-  } else {
-    try {
-      r.panorama = checkPanorama(*set.environment_file, r.warnings);
-    } catch (const Error& e) {
-      r.warnings.emplace_back(e.what());
-    }
-  }
-  return r;
-}
-
 SplatCheck checkSplats(const fs::path& path) {
   const SplatFile f = readSplatPly(path);
   SplatCheck s{f.cloud.size(), f.sh_degree, f.materials.has_value()};
@@ -113,18 +87,66 @@ nlohmann::ordered_json jsonOf(vec3 v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-CheckReport checkPath(const fs::path& path, const ImportOptions& options) {
+CheckReport checkDescription(const fs::path& path, const ImportedCapture& capture) {
   CheckReport r;
+  r.path = path.string();
+  r.kind = "capture";
+  r.layout = capture.layout;
+  r.up = toText(capture.set.up);
+  r.frames = capture.set.frames;
+  r.warnings = capture.warnings;
+  r.seed_points = capture.set.seed_points.position_m.size();
+  for (const View& v : capture.set.views) {
+    r.cameras.push_back(
+        {v.name, v.split == Split::Test, v.camera.width, v.camera.height, v.camera.intrinsics});
+  }
+  return r;
+}
+
+void checkPictures(const CaptureSet& set, CheckReport& r, Progress& progress) {
+  std::vector<std::vector<std::string>> warnings(set.views.size());
+  progress.expect(static_cast<std::int64_t>(set.views.size()));
+  // Some cameras at once: progress is told between them, by this thread.
+  const std::size_t at_once = std::max<std::size_t>(1, static_cast<std::size_t>(threadCount()));
+  for (std::size_t first = 0; first < set.views.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, set.views.size() - first);
+    parallelFor(count, 1, [&](std::size_t begin, std::size_t) {
+      const std::size_t v = first + begin;
+      r.cameras[v] = checkCamera(set, v, r.cameras[v], warnings[v], progress);
+    });
+    progress.step(static_cast<std::int64_t>(count));
+  }
+  for (const auto& w : warnings) r.warnings.insert(r.warnings.end(), w.begin(), w.end());
+  if (set.masks == MaskKind::None)
+    r.warnings.push_back("no masks: there will be no visual hull and no mask loss");
+  if (!set.environment_file) {
+    r.warnings.push_back("no panorama (environment.exr or .hdr): the run stops after Surface");
+  } else {
+    try {
+      r.panorama = checkPanorama(*set.environment_file, r.warnings);
+    } catch (const Error& e) {
+      r.warnings.emplace_back(e.what());
+    }
+  }
+}
+
+CheckReport checkPath(const fs::path& path, const ImportOptions& options, Progress* progress) {
   if (fs::is_directory(path) || !fs::exists(path)) {
-    r = checkCapture(path, options);
-  } else if (path.extension() == ".ply") {
+    const ImportedCapture capture = openCapture(path, options);
+    CheckReport r = checkDescription(path, capture);
+    Progress none;
+    checkPictures(capture.set, r, progress ? *progress : none);
+    return r;
+  }
+  CheckReport r;
+  r.path = path.string();
+  if (path.extension() == ".ply") {
     r.kind = "splats";
     r.splats = checkSplats(path);
   } else {
     r.kind = "panorama";
     r.panorama = checkPanorama(path, r.warnings);
   }
-  r.path = path.string();
   return r;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/io/capture_reader.h"
 
 namespace beam {
@@ -43,8 +44,15 @@ struct CheckReport {
 };
 
 // Looks at every picture of the capture; damaged ones become warnings that name file, camera and frame.
-// Throws Error{Data} when nothing usable is there.
-CheckReport checkPath(const std::filesystem::path& path, const ImportOptions& options = {});
+// Throws Error{Data} when nothing usable is there, Cancelled when `progress` was asked to stop.
+CheckReport checkPath(const std::filesystem::path& path, const ImportOptions& options = {},
+                      Progress* progress = nullptr);
+
+// The two halves of it for a capture that is open. What its description says, which is quick: no camera has
+// pictures yet, and warnings are those of the import.
+CheckReport checkDescription(const std::filesystem::path& path, const ImportedCapture& capture);
+// What its pictures and its panorama say, into `report`; reads all of them.
+void checkPictures(const CaptureSet& set, CheckReport& report, Progress& progress);
 
 std::string toText(const CheckReport& report);
 std::string toJson(const CheckReport& report);

@@ -398,6 +398,36 @@ TEST(CaptureCheck, NamesFileCameraAndFrameOfEachDamagedPicture) {
   EXPECT_THAT(toText(r), HasSubstr("frames: 2 (000003 to 000004)"));
 }
 
+TEST(CaptureCheck, SaysInTwoHalvesWhatItSaysAtOnce) {
+  const TempDir dir;
+  put(dir / "dataset.json", kDataset);
+  putPictures(dir.path());
+  const std::string whole = readTextFile(dir / "images/b/000004.png");
+  put(dir / "images/b/000004.png", whole.substr(0, whole.size() - 9));
+  const ImportedCapture capture = openCapture(dir.path());
+  CheckReport r = checkDescription(dir.path(), capture);
+  EXPECT_EQ(r.cameras.size(), 2u);
+  EXPECT_EQ(r.cameras[0].frames, 0) << "no picture was looked at";
+  EXPECT_THAT(r.warnings, ::testing::Not(::testing::Contains(HasSubstr("truncated"))));
+  double fraction = 0;
+  Progress progress({}, [&](const ProgressReport& report) { fraction = report.fraction; });
+  checkPictures(capture.set, r, progress);
+  EXPECT_EQ(fraction, 1);
+  EXPECT_EQ(toJson(r), toJson(checkPath(dir.path())));
+  EXPECT_EQ(toText(r), toText(checkPath(dir.path())));
+  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("truncated")));
+}
+
+TEST(CaptureCheck, EndsWhenItIsAskedTo) {
+  const TempDir dir;
+  put(dir / "dataset.json", kDataset);
+  putPictures(dir.path());
+  std::stop_source stop;
+  stop.request_stop();
+  Progress progress(stop.get_token());
+  EXPECT_THROW(checkPath(dir.path(), {}, &progress), Cancelled);
+}
+
 TEST(CaptureCheck, ListsWhatWasRepairedInAPanorama) {
   const TempDir dir;
   Planes p(8, 4, 3, 0.5f);
