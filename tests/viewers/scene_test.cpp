@@ -383,7 +383,7 @@ TEST_F(SceneHand, ShowsTheInfluenceUnderThePickedJoint) {
   view.setLayerShown(SceneLayer::Cameras, false);
   view.setInfluence(44, std::make_shared<const std::vector<float>>(cloud->size(), 1.0f));
   const QImage image = seen();
-  const QPointF joint = onScreen(joints[44]);
+  const QPointF joint = onScreen(joints[44]) * image.devicePixelRatio();
   int yellow = 0, pixels = 0;
   for (int y = -12; y <= 12; ++y) {
     for (int x = -12; x <= 12; ++x) {

@@ -60,6 +60,7 @@ void SceneView::State::place() {
 void SceneView::State::render() {
   render_timer.stop();
   updateVisibility();
+  updateSizes();
   place();
   if (vtk->isVisible()) window->Render();
   labels->update();

@@ -44,11 +44,27 @@ SceneLabels::SceneLabels(const SceneView::State& state, QWidget* parent) : QWidg
 void SceneLabels::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
+  paintAxisNames(painter);
   paintLookThrough(painter);
   paintMarkedName(painter);
   if (!state_.influenceFits() || state_.picked_joint < 0) return;
   paintPickedJoint(painter);
   paintLegend(painter);
+}
+
+void SceneLabels::paintAxisNames(QPainter& painter) const {
+  if (!state_.shown[static_cast<int>(SceneLayer::Grid)]) return;
+  const std::array<const char*, 3> names{"X", "Y up", "Z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    vec3 end(0);
+    end[axis] = 0.52f * kGridExtent_m;
+    const auto at = state_.onScreen(end);
+    if (!at) continue;
+    for (const QPointF& shadow : {QPointF(1, 1), QPointF(0, 0)}) {
+      painter.setPen(shadow.isNull() ? kWords : QColor(16, 17, 19));
+      painter.drawText(*at + shadow, names[axis]);
+    }
+  }
 }
 
 void SceneLabels::paintLookThrough(QPainter& painter) const {

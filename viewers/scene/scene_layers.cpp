@@ -95,7 +95,18 @@ void SceneView::State::updateVisibility() {
     coarse[i]->SetVisibility(shown[i] && stand_in);
   }
   mark->SetVisibility(markShown());
-  for (auto& name : axis_names) name->SetVisibility(shown[static_cast<int>(SceneLayer::Grid)]);
+}
+
+// VTK counts in pixels of the screen, and those are small on a dense one.
+void SceneView::State::updateSizes() {
+  const auto ratio = static_cast<float>(vtk->devicePixelRatioF());
+  const auto property = [&](SceneLayer layer) { return actors[static_cast<int>(layer)]->GetProperty(); };
+  property(SceneLayer::Cameras)->SetLineWidth(1.4f * ratio);
+  property(SceneLayer::Grid)->SetLineWidth(ratio);
+  property(SceneLayer::SeedPoints)->SetPointSize(3 * ratio);
+  property(SceneLayer::Joints)->SetLineWidth(1.6f * ratio);
+  property(SceneLayer::Joints)->SetPointSize(joint_size_px * ratio);
+  mark->GetProperty()->SetLineWidth(3 * ratio);
 }
 
 void SceneView::State::show(SceneLayer layer, const BuiltLayer& data, const QString& count) {
@@ -193,10 +204,8 @@ void SceneView::State::buildJoints() {
     return;
   }
   const auto joints = static_cast<float>(trails.back().size());
-  const float size_px =
-      std::max(kSmallJointSize_px, kJointSize_px * std::sqrt(std::min(1.0f, kFewJoints / joints)));
-  actors[static_cast<int>(SceneLayer::Joints)]->GetProperty()->SetPointSize(picked < 0 ? size_px
-                                                                                       : kFaintJointSize_px);
+  const float size_px = kJointSize_px * std::sqrt(std::min(1.0f, kFewJoints / joints));
+  joint_size_px = picked < 0 ? std::max(kSmallJointSize_px, size_px) : kFaintJointSize_px;
   QString words = counted(trails.back().size(), "joint");
   if (trails.size() > 1) words += " with trails of " + counted(trails.size(), "frame");
   words += picked < 0 ? QString(", press one to see its influence")

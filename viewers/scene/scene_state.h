@@ -4,7 +4,6 @@
 
 #include <QVTKOpenGLNativeWidget.h>
 #include <vtkActor.h>
-#include <vtkBillboardTextActor3D.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
@@ -22,6 +21,8 @@
 #include "viewers/scene/vtk_convert.h"
 
 namespace beam {
+
+inline constexpr float kGridExtent_m = 2;
 
 // A layer's geometry, and a stand-in for it while the camera moves; null: it needs none.
 struct BuiltLayer {
@@ -53,6 +54,7 @@ struct SceneView::State {
   void buildMark();
   void updateFacts();
   void updateVisibility();
+  void updateSizes();
   bool markShown() const;
   double frustumLength() const { return 0.11 * home.radius_m; }
   bool influenceFits() const { return influence && cloud && influence->size() == cloud->size(); }
@@ -91,7 +93,6 @@ struct SceneView::State {
   std::array<vtkSmartPointer<vtkActor>, kSceneLayerCount> actors;
   std::array<vtkSmartPointer<vtkActor>, kSceneLayerCount> coarse;  // without geometry: the layer needs none
   vtkSmartPointer<vtkActor> mark;
-  std::array<vtkSmartPointer<vtkBillboardTextActor3D>, 3> axis_names;
   std::array<bool, kSceneLayerCount> shown{};
   std::array<QString, kSceneLayerCount> counts;
 
@@ -102,6 +103,7 @@ struct SceneView::State {
   JointTrails trails;
   QString joint_hint;
   int picked_joint = -1;
+  float joint_size_px = 1;
 
   OrbitCamera orbit;
   Bounds home{vec3(0, 0.9f, 0), 2.5f};
@@ -127,6 +129,7 @@ class SceneLabels final : public QWidget {
  private:
   void paintLegend(QPainter& painter) const;
   void paintPickedJoint(QPainter& painter) const;
+  void paintAxisNames(QPainter& painter) const;
   void paintMarkedName(QPainter& painter) const;
   void paintLookThrough(QPainter& painter) const;
 

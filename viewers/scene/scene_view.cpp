@@ -4,7 +4,6 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindowInteractor.h>
-#include <vtkTextProperty.h>
 
 #include <QVBoxLayout>
 
@@ -14,7 +13,7 @@
 namespace beam {
 namespace {
 
-constexpr float kGridExtent_m = 2, kGridCell_m = 0.25f;
+constexpr float kGridCell_m = 0.25f;
 constexpr int kRest_ms = 160;  // without movement before the whole mesh
 
 struct LayerWords {
@@ -51,26 +50,11 @@ void SceneView::State::addActors() {
   for (vtkActor* flat : {actor(SceneLayer::Cameras), actor(SceneLayer::SeedPoints), actor(SceneLayer::Grid),
                          actor(SceneLayer::Joints), mark.Get()})
     flat->GetProperty()->LightingOff();
-  actor(SceneLayer::Cameras)->GetProperty()->SetLineWidth(1.4f);
-  mark->GetProperty()->SetLineWidth(3);
-  actor(SceneLayer::SeedPoints)->GetProperty()->SetPointSize(3);
-  actor(SceneLayer::Joints)->GetProperty()->SetLineWidth(1.6f);
   for (const SceneLayer solid : {SceneLayer::Gaussians, SceneLayer::Mesh}) {
     actor(solid)->GetProperty()->SetAmbient(0.35);
     actor(solid)->GetProperty()->SetDiffuse(0.65);
     actor(solid)->GetProperty()->SetInterpolationToGouraud();
     coarse[static_cast<int>(solid)]->SetProperty(actor(solid)->GetProperty());
-  }
-  const std::array<const char*, 3> names{"X", "Y up", "Z"};
-  for (int i = 0; i < 3; ++i) {
-    axis_names[i] = vtkSmartPointer<vtkBillboardTextActor3D>::New();
-    axis_names[i]->SetInput(names[i]);
-    dvec3 at(0);
-    at[i] = 0.52 * kGridExtent_m;
-    axis_names[i]->SetPosition(at.x, at.y, at.z);
-    axis_names[i]->GetTextProperty()->SetFontSize(15);
-    axis_names[i]->GetTextProperty()->SetColor(0.85, 0.87, 0.9);
-    overlay->AddActor(axis_names[i]);  // a word cut by the body cannot be read
   }
 }
 
