@@ -2,7 +2,6 @@
 #include "ui/field_editors.h"
 
 #include <QCheckBox>
-#include <QComboBox>
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLineEdit>
@@ -14,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/field_text.h"
+#include "ui/quiet_combo.h"
 
 namespace beam {
 namespace {
@@ -35,26 +35,6 @@ bool isCommand(const QKeyEvent& event) {
   return event.modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier);
 }
 
-class QuietFilter final : public QObject {
- public:
-  using QObject::QObject;
-
- protected:
-  bool eventFilter(QObject* object, QEvent* event) override {
-    const bool wheel = event->type() == QEvent::Wheel && !static_cast<QComboBox*>(object)->hasFocus();
-    const bool letter = event->type() == QEvent::KeyPress && isLetter(*static_cast<QKeyEvent*>(event));
-    if (!wheel && !letter) return QObject::eventFilter(object, event);
-    event->ignore();  // the parent is asked next
-    return true;
-  }
-
- private:
-  static bool isLetter(const QKeyEvent& event) {
-    return !isCommand(event) && !event.text().isEmpty() && event.text()[0].isPrint() &&
-           event.key() != Qt::Key_Space;
-  }
-};
-
 class BoolEditor final : public FieldEditor {
  public:
   BoolEditor(const Field& field, QWidget* parent) : FieldEditor(parent), box_(new QCheckBox) {
@@ -74,9 +54,8 @@ class BoolEditor final : public FieldEditor {
 
 class ChoiceEditor final : public FieldEditor {
  public:
-  ChoiceEditor(const Field& field, QWidget* parent) : FieldEditor(parent), box_(new QComboBox) {
+  ChoiceEditor(const Field& field, QWidget* parent) : FieldEditor(parent), box_(new QuietCombo) {
     for (const std::string& choice : field.info.choices) box_->addItem(QString::fromStdString(choice));
-    quieten(*box_);
     rowOf(this)->addWidget(box_);
     setFocusProxy(box_);
     show(field.value);
@@ -87,10 +66,10 @@ class ChoiceEditor final : public FieldEditor {
     box_->setCurrentText(QString::fromStdString(std::get<std::string>(value)));
   }
   void setReadOnly(bool read_only) override { box_->setEnabled(!read_only); }
-  void setTip(const QString& tip) override { box_->setToolTip(tip); }
+  void setTip(const QString& tip) override { box_->setHelp(tip); }
 
  private:
-  QComboBox* box_;
+  QuietCombo* box_;
 };
 
 // 1,000 and 1e3 are whole numbers, too.
@@ -257,11 +236,6 @@ QString shownText(const FieldValue& value) {
   QString text = QString::number(*number, 'f', decimals);
   while (text.contains('.') && (text.endsWith('0') || text.endsWith('.'))) text.chop(1);
   return text;
-}
-
-void quieten(QComboBox& box) {
-  box.setFocusPolicy(Qt::StrongFocus);
-  box.installEventFilter(new QuietFilter(&box));
 }
 
 }  // namespace beam

@@ -7,8 +7,6 @@
 
 #include "core/base/fields.h"
 
-class QComboBox;
-
 namespace beam {
 
 class FieldEditor : public QWidget {
@@ -39,9 +37,5 @@ FieldEditor* makeFieldEditor(const Field& field, QWidget* parent = nullptr);
 QString valueText(const FieldValue& value);
 // As a field shows it: six digits of what is no whole number.
 QString shownText(const FieldValue& value);
-
-// A closed combo box leaves letters and digits to the views, and the wheel, unless it has the focus, to the
-// form that it stands in.
-void quieten(QComboBox& box);
 
 }  // namespace beam

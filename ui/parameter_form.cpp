@@ -10,6 +10,7 @@
 
 #include "ui/field_editors.h"
 #include "ui/field_row.h"
+#include "ui/words.h"
 
 namespace beam {
 namespace {
@@ -134,10 +135,8 @@ QString ParameterForm::trouble() const {
   if (troubles_.empty()) return {};
   const std::size_t more = troubles_.size() - 1;
   if (more == 0) return troubles_.back().why;
-  return QString("%1 (and %2 more %3)")
-      .arg(troubles_.back().why)
-      .arg(more)
-      .arg(more == 1 ? "field" : "fields");
+  const QString others = countText(static_cast<std::int64_t>(more), "more field");
+  return QString("%1 (and %2)").arg(troubles_.back().why, others);
 }
 
 FieldEditor* ParameterForm::troubledEditor() const {

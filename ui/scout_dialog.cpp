@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "ui/run_bar.h"
+#include "ui/words.h"
 
 namespace beam {
 
@@ -31,22 +31,19 @@ QString scoutText(const ScoutPlan& plan, int every) {
   QString words =
       "A scout run solves a few frames of the in–out range, evenly spread,\nfor a first look at all of "
       "it.\n\n";
-  words += QString("%1 of %2 frames %3 solved with the preset %4")
-               .arg(solved)
-               .arg(plan.frames)
-               .arg(solved == 1 ? "is" : "are")
-               .arg(plan.preset);
+  words +=
+      QString("%1 of %2 %3 solved with the preset %4")
+          .arg(numberText(solved), countText(plan.frames, "frame"), solved == 1 ? "is" : "are", plan.preset);
   words +=
       plan.seconds_a_frame > 0
           ? QString(":\nabout %1, as frames took so far.").arg(durationText(solved * plan.seconds_a_frame))
           : QString(";\nhow long one takes is known after the first.");
   if (between > 0) {
-    words += QString("\n%1 between %2: to look at, without scores.")
-                 .arg(between)
-                 .arg(between == 1 ? "is interpolated" : "are interpolated");
+    words += "\n" + countText(between, "between is interpolated", "between are interpolated") +
+             ": to look at, without scores.";
   }
   if (after > 0) {
-    words += QString("\n%1 after the last %2 that one.").arg(after).arg(after == 1 ? "shows" : "show");
+    words += "\n" + countText(after, "after the last shows", "after the last show") + " that one.";
   }
   return words + "\n\nDistance from one solved frame to the next, in frames:";
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/settings_panel.h"
 
-#include <QComboBox>
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
@@ -13,6 +12,8 @@
 
 #include "ui/field_editors.h"
 #include "ui/parameter_form.h"
+#include "ui/quiet_combo.h"
+#include "ui/words.h"
 #include "ui/wrapped_note.h"
 
 namespace beam {
@@ -40,7 +41,7 @@ SettingsPanel::SettingsPanel(ProjectModel& model, QWidget* parent)
     : QWidget(parent),
       model_(model),
       pages_(new QStackedWidget),
-      preset_(new QComboBox),
+      preset_(new QuietCombo),
       title_(new QLabel),
       summary_(new QLabel),
       changed_(new QLabel),
@@ -95,9 +96,6 @@ QWidget* SettingsPanel::makeHead() {
 }
 
 QWidget* SettingsPanel::makeStagePage() {
-  quieten(*preset_);
-  preset_->setMinimumContentsLength(6);
-  preset_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   auto* preset_row = new QHBoxLayout;
   auto* words = new QLabel("Preset");
   words->setBuddy(preset_);
@@ -173,8 +171,8 @@ void SettingsPanel::refreshPresets() {
   }
   preset_->setCurrentText(QString::fromStdString(project.document().preset));
   preset_->setEnabled(read_only_.isEmpty());
-  preset_->setToolTip(read_only_.isEmpty() ? "Where all settings start; what you change stays changed"
-                                           : read_only_);
+  preset_->setHelp(read_only_.isEmpty() ? "Where all settings start; what you change stays changed"
+                                        : read_only_);
 }
 
 void SettingsPanel::refreshForm() {
@@ -195,9 +193,9 @@ void SettingsPanel::refreshForm() {
   form_->setReadOnly(read_only_);
   form_->setFields(fields, standard, headings);
   const int changed = static_cast<int>(form_->changedNames().size());
-  changed_->setText(changed == 0   ? QString("All settings are those of the preset")
-                    : changed == 1 ? QString("1 setting differs from the preset")
-                                   : QString("%1 settings differ from the preset").arg(changed));
+  changed_->setText(changed == 0
+                        ? QString("All settings are those of the preset")
+                        : countText(changed, "setting differs", "settings differ") + " from the preset");
   reset_all_->setEnabled(changed > 0 && read_only_.isEmpty());
   reset_all_->setToolTip(!read_only_.isEmpty() ? read_only_
                          : changed > 0         ? QString("Puts the preset's values back into this stage")

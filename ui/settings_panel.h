@@ -9,7 +9,6 @@
 
 #include "ui/project_model.h"
 
-class QComboBox;
 class QLabel;
 class QScrollArea;
 class QStackedWidget;
@@ -18,6 +17,7 @@ class QToolButton;
 namespace beam {
 
 class ParameterForm;
+class QuietCombo;
 class WrappedNote;
 
 class SettingsPanel final : public QWidget {
@@ -59,7 +59,7 @@ class SettingsPanel final : public QWidget {
   QString read_only_;  // why; empty: it is not
   bool running_ = false;
   QStackedWidget* pages_;
-  QComboBox* preset_;
+  QuietCombo* preset_;
   QLabel *title_, *summary_, *changed_;
   QToolButton* reset_all_;
   QScrollArea* scroll_ = nullptr;
