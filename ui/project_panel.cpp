@@ -23,6 +23,8 @@ namespace beam {
 namespace {
 
 constexpr int kLeastLetters = 4;
+constexpr int kSizeLetters = 30;                    // from this width on the sizes of pictures are shown
+constexpr int kName = 0, kSize = 1, kProblems = 2;  // columns of the cameras
 
 QFrame* line() {
   auto* frame = new QFrame;
@@ -64,11 +66,12 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
   frames_->setMinimumContentsLength(kLeastLetters);
   frames_->installEventFilter(this);
   cameras_->setHeaderHidden(true);
-  cameras_->setColumnCount(2);
+  cameras_->setColumnCount(3);
   cameras_->header()->setStretchLastSection(false);
   cameras_->header()->setMinimumSectionSize(4);
-  cameras_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
-  cameras_->header()->setSectionResizeMode(1, QHeaderView::ResizeToContents);
+  cameras_->header()->setSectionResizeMode(kName, QHeaderView::Stretch);
+  for (const int column : {kSize, kProblems})
+    cameras_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
   cameras_->setRootIsDecorated(true);
   cameras_->setIndentation(14);
   cameras_->setFocusPolicy(Qt::StrongFocus);
@@ -137,6 +140,11 @@ QSize ProjectPanel::minimumSizeHint() const {
 // Some cameras are always to be seen; beyond that the panel scrolls.
 void ProjectPanel::fitRows() { cameras_->setMinimumHeight(6 * (fontMetrics().height() + 8)); }
 
+void ProjectPanel::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  cameras_->setColumnHidden(kSize, width() < kSizeLetters * fontMetrics().averageCharWidth());
+}
+
 void ProjectPanel::changeEvent(QEvent* event) {
   QWidget::changeEvent(event);
   if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) fitRows();
@@ -156,7 +164,7 @@ bool ProjectPanel::eventFilter(QObject* watched, QEvent* event) {
 }
 
 std::optional<ViewIndex> ProjectPanel::viewOf(const QTreeWidgetItem* item) const {
-  const QVariant index = item ? item->data(0, Qt::UserRole) : QVariant();
+  const QVariant index = item ? item->data(kName, Qt::UserRole) : QVariant();
   return index.isValid() ? std::optional(ViewIndex{index.toInt()}) : std::nullopt;
 }
 
@@ -261,13 +269,13 @@ void ProjectPanel::fillCameras() {
       if (view.split != split) continue;
       ++count;
       auto* item = new QTreeWidgetItem(group);
-      item->setText(0, QString("%1   %2 × %3")
-                           .arg(QString::fromStdString(view.name))
-                           .arg(view.camera.width)
-                           .arg(view.camera.height));
-      item->setData(0, Qt::UserRole, static_cast<int>(i));
+      item->setText(kName, QString::fromStdString(view.name));
+      item->setText(kSize, QString("%1 × %2").arg(view.camera.width).arg(view.camera.height));
+      item->setForeground(kSize, colors().quiet);
+      item->setData(kName, Qt::UserRole, static_cast<int>(i));
     }
-    group->setText(0,
+    group->setFirstColumnSpanned(true);
+    group->setText(kName,
                    QString("%1 (%2)").arg(split == Split::Train ? "Training" : "Test, held out").arg(count));
     group->setHidden(count == 0);
   }
@@ -286,11 +294,12 @@ void ProjectPanel::showProblems() {
     if (!view) continue;
     const auto found = problems_.find(model_.capture()->views[view->value].name);
     const QStringList texts = found == problems_.end() ? QStringList() : found->second;
-    (*it)->setText(1, texts.isEmpty() ? QString() : QString("▲ %1").arg(texts.size()));
-    (*it)->setForeground(1, colors().warning);
-    QString tip = (*it)->text(0) + "\nClick: choose it · double click or Enter: look through it";
+    (*it)->setText(kProblems, texts.isEmpty() ? QString() : QString("▲ %1").arg(texts.size()));
+    (*it)->setForeground(kProblems, colors().warning);
+    QString tip = (*it)->text(kName) + ", " + (*it)->text(kSize) +
+                  "\nClick: choose it · double click or Enter: look through it";
     if (!texts.isEmpty()) tip += "\n\n" + texts.join("\n");
-    for (const int column : {0, 1}) (*it)->setToolTip(column, tip);
+    for (const int column : {kName, kSize, kProblems}) (*it)->setToolTip(column, tip);
   }
 }
 

@@ -15,7 +15,7 @@
 namespace beam {
 namespace {
 
-constexpr int kLeastLetters = 14, kWishedLetters = 44;  // of the words
+constexpr int kLeastLetters = 18, kWishedLetters = 44;  // of the words
 constexpr double kLeastShare = 0.02, kLeast_s = 2;      // before that a share says nothing of the whole
 
 QString percent(double fraction) {

@@ -48,12 +48,17 @@ StageRail::StageRail(QWidget* parent) : QWidget(parent) {
 
 double StageRail::signSize() const { return std::max(16.0, fontMetrics().ascent() * 1.25); }
 
-double StageRail::widestCell() const {
+double StageRail::widestTitle() const {
   const QFontMetrics strong(bold(font()));
-  double words = kMostLetters * fontMetrics().averageCharWidth();
+  double widest = 0;
   for (int i = 0; i < count(); ++i)
-    words = std::max(words, static_cast<double>(strong.horizontalAdvance(titleOf(stages_[i], i))));
-  return signSize() + words + 4 * kPad;
+    widest = std::max(widest, static_cast<double>(strong.horizontalAdvance(titleOf(stages_[i], i))));
+  return widest;
+}
+
+double StageRail::widestCell() const {
+  const double words = kMostLetters * fontMetrics().averageCharWidth();
+  return signSize() + std::max(words, widestTitle()) + 4 * kPad;
 }
 
 double StageRail::narrowestCell() const {
@@ -291,8 +296,7 @@ void StageRail::paintCell(QPainter& p, int index) const {
     p.drawRect(QRectF(box.left() + 4, box.bottom() - 3.5, width, 2.5));
   }
   const QRectF inside = box.adjusted(kPad, kEdge, -kPad, -kEdge);
-  const double title = QFontMetrics(bold(font())).horizontalAdvance(titleOf(stage, index));
-  if (inside.width() >= signSize() + kPad + title) {
+  if (inside.width() >= signSize() + kPad + widestTitle()) {
     paintWide(p, inside, index);
   } else {
     paintNarrow(p, inside, index);

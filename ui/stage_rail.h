@@ -51,6 +51,7 @@ class StageRail final : public QWidget {
  private:
   int count() const { return static_cast<int>(stages_.size()); }
   int indexOf(const std::string& stage) const;
+  double widestTitle() const;
   double widestCell() const;
   double narrowestCell() const;
   double signSize() const;

@@ -23,8 +23,9 @@ namespace beam {
 namespace {
 
 constexpr int kSides = 16, kSpacing = 4;
-constexpr int kLeastLetters = 5;      // of the words beside the buttons
-constexpr double kLanesShare = 0.28;  // of the window's height that the lanes may insist on
+constexpr int kLeastLetters = 5;     // of the words beside the buttons
+constexpr double kDockShare = 0.36;  // of the window's height that the dock may insist on
+constexpr double kOtherLines = 6.5;  // lines of text that its title, tabs and the transport row take
 constexpr int kCurveLetters = 6;
 
 QToolButton* button(QHBoxLayout* row, const QString& name) {
@@ -213,9 +214,11 @@ void TimelinePanel::fold() {
   layout()->activate();  // not a moment with the old row at the new width
 }
 
-// The lanes insist on their height up to a share of the window; where that is low they scroll.
+// The lanes insist on their height as far as a share of the window has it; where that is low they scroll.
 void TimelinePanel::fitHeight() {
-  const int most = static_cast<int>(kLanesShare * window()->height());
+  const int most =
+      std::max(2 * fontMetrics().height(),
+               static_cast<int>(kDockShare * window()->height() - kOtherLines * fontMetrics().height()));
   const int wanted = std::min(lanes_->sizeHint().height(), most);
   if (scroll_->minimumHeight() == wanted) return;
   scroll_->setMinimumHeight(wanted);

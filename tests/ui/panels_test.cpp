@@ -162,11 +162,11 @@ TEST_F(Panels, CameraRowsCountTheirProblemsAndTellThem) {
   ProjectPanel panel(model);
   Cameras cameras(panel);
   panel.setProblems({{"C02", {"the photograph is cut off", "the mask is empty"}}});
-  EXPECT_EQ(cameras.row(1)->text(1).toStdString(), "▲ 2");
+  EXPECT_EQ(cameras.row(1)->text(2).toStdString(), "▲ 2");
   EXPECT_TRUE(cameras.row(1)->toolTip(0).contains("the mask is empty"));
-  EXPECT_TRUE(cameras.row(0)->text(1).isEmpty());
+  EXPECT_TRUE(cameras.row(0)->text(2).isEmpty());
   panel.setProblems({});
-  EXPECT_TRUE(cameras.row(1)->text(1).isEmpty());
+  EXPECT_TRUE(cameras.row(1)->text(2).isEmpty());
 }
 
 TEST_F(Panels, TheProjectPanelFitsWhereItIsNarrowAndLow) {
