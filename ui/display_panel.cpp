@@ -80,6 +80,7 @@ DisplayPanel::DisplayPanel(SplatView& view, LightLibrary& lights, QWidget* paren
       exposure_words_(quiet()),
       photo_words_(quiet()),
       sky_(new QCheckBox("Show panorama")),
+      lock_depth_(new QCheckBox("Lock depth limits")),
       open_(new QPushButton("Open panorama…")) {
   for (int i = 0; i < kChannelCount; ++i) {
     channel_->addItem(QString("%1   %2").arg(i + 1).arg(infoOf(static_cast<Channel>(i)).title));
@@ -105,6 +106,7 @@ void DisplayPanel::makeRows() {
   addRow(*rows, "Exposure", exposure_, exposure_words_);
   addRow(*rows, "Photograph", photo_, photo_words_);
   rows->addWidget(sky_);
+  rows->addWidget(lock_depth_);
   rows->addSpacing(8);
   rows->addWidget(hands);
   rows->addStretch();
@@ -130,6 +132,7 @@ void DisplayPanel::connectParts() {
   connect(photo_, &QSlider::valueChanged, this,
           [this](int percent) { view_.setPhotoOpacity(static_cast<float>(percent) / 100); });
   connect(sky_, &QCheckBox::toggled, &view_, &SplatView::setSky);
+  connect(lock_depth_, &QCheckBox::clicked, &view_, &SplatView::lockDepth);
   connect(&view_, &SplatView::stateChanged, this, &DisplayPanel::mirror);
   connect(&lights_, &LightLibrary::entriesChanged, this, &DisplayPanel::fillLights);
   connect(&lights_, &LightLibrary::lightChanged, this, &DisplayPanel::fillLights);
@@ -146,6 +149,11 @@ void DisplayPanel::mirror(const ViewState& state) {
                          ? "How much of the photograph lies over the render"
                          : "Look through a camera ([ or ]) to lay its photograph over the render.");
   sky_->setChecked(state.sky);
+  const bool depth = state.channel == Channel::Depth;
+  lock_depth_->setEnabled(depth);
+  lock_depth_->setChecked(state.depth_limits.has_value());
+  lock_depth_->setToolTip(depth ? "Keep these limits of the colours while camera and frame change"
+                                : "Choose the channel Depth first: its colours have limits to keep.");
   yaw_words_->setText(QString("%1°").arg(yaw_->value()));
   exposure_words_->setText(QString::asprintf("%+.2f stops", state.exposure_stops));
   photo_words_->setText(QString("%1 %").arg(photo_->value()));

@@ -41,7 +41,7 @@ class DisplayPanel final : public QWidget {
   QSlider* exposure_;
   QSlider* photo_;
   QLabel *yaw_words_, *exposure_words_, *photo_words_;
-  QCheckBox* sky_;
+  QCheckBox *sky_, *lock_depth_;
   QPushButton* open_;
 };
 

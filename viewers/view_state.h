@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/scene/ids.h"
+#include "viewers/false_color.h"
 #include "viewers/orbit_camera.h"
 
 namespace beam {
@@ -28,9 +29,10 @@ struct ViewState {
   std::optional<ViewIndex> look_through;  // a camera of the capture instead of the orbit
   Channel channel = Channel::Lit;
   float exposure_stops = 0;
-  float yaw_rad = 0;        // turns the light about +Y
-  bool sky = false;         // show the panorama behind the subject
-  float photo_opacity = 0;  // of the photograph over the render, [0, 1]
+  float yaw_rad = 0;                   // turns the light about +Y
+  bool sky = false;                    // show the panorama behind the subject
+  float photo_opacity = 0;             // of the photograph over the render, [0, 1]
+  std::optional<Limits> depth_limits;  // of the colours of depth, metres; nothing: as each picture asks
 };
 
 }  // namespace beam

@@ -307,7 +307,7 @@ TEST_F(Panel, TellsUnitsAndWhyWhatIsGreyIsGrey) {
     EXPECT_FALSE(w->toolTip().isEmpty()) << w->metaObject()->className();
     ++grey;
   }
-  EXPECT_EQ(grey, 4) << "light, turn, photograph and sky";
+  EXPECT_EQ(grey, 5) << "light, turn, photograph, sky and the limits of depth";
 }
 
 TEST_F(Panel, IsReachedByTabEverywhere) {

@@ -251,6 +251,27 @@ TEST_F(SplatHands, KeepsItsWordsInsideANarrowViewWithLargeTypeAndOffTheLegend) {
   }
 }
 
+TEST_F(SplatHands, HoldsTheLimitsOfDepthWhileTheCameraMoves) {
+  view.setChannel(Channel::Depth);
+  const vec3 near = meanColor(picture(), kTop);
+  view.lockDepth(true);
+  ASSERT_TRUE(view.state().depth_limits);
+  const Limits held = *view.state().depth_limits;
+  EXPECT_EQ(meanColor(picture(), kTop), near);
+  ViewState state = view.state();
+  state.orbit.distance_m = 3.4f;
+  view.setState(state);
+  const vec3 locked = meanColor(picture(), kTop);
+  EXPECT_EQ(view.state().depth_limits->low, held.low);
+  view.lockDepth(false);
+  const vec3 automatic = meanColor(picture(), kTop);
+  EXPECT_GT(glm::distance(locked, automatic), 20) << "farther away is another colour between the same limits";
+  view.setChannel(Channel::Normal);
+  picture();
+  view.lockDepth(true);
+  EXPECT_FALSE(view.state().depth_limits) << "there are none to hold";
+}
+
 TEST_F(SplatHands, ForgetsWhatBelongedToTheProjectBefore) {
   const auto capture = threeFrames(std::make_shared<FrameColours>());
   view.setCapture(capture, FrameIndex{0});

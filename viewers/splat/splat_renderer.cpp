@@ -81,7 +81,8 @@ SplatPicture SplatRenderer::render(const SplatRequest& r) {
   const GBuffer& gbuffer = gbufferFor(r);
   static const auto none = std::make_shared<const Image<vec3>>();
   const Image<vec3>& lit = picture.channel == Channel::Lit ? litFor(r) : *none;
-  if (picture.channel == Channel::Depth) picture.limits = robustLimits(gbuffer.depth_m.pixels);
+  if (picture.channel == Channel::Depth)
+    picture.limits = r.depth_limits ? *r.depth_limits : robustLimits(gbuffer.depth_m.pixels);
   const Image<vec3> sky = r.sky && r.light ? skyOf(r.camera, *r.light, r.yaw_rad) : Image<vec3>();
   picture.pixels = channelPicture(
       gbuffer, lit, sky,

@@ -26,6 +26,7 @@ struct SplatRequest {
   float yaw_rad = 0;
   float exposure_stops = 0;
   bool sky = false;
+  std::optional<Limits> depth_limits;  // nothing: of the picture itself
 };
 
 // What a channel that was asked for cannot be shown without.

@@ -147,6 +147,12 @@ void SplatView::setPhotoOpacity(float opacity) {
   Q_EMIT stateChanged(state_);
 }
 
+void SplatView::lockDepth(bool on) {
+  if (on && shown_.channel == Channel::Depth && hasPicture(0)) state_.depth_limits = shown_.limits;
+  if (!on) state_.depth_limits.reset();
+  changed(Pace::Resting);
+}
+
 void SplatView::lookThrough(std::optional<ViewIndex> view) {
   if (view && !capture_) return;
   state_.look_through = view;
@@ -228,7 +234,8 @@ void SplatView::request(int divisor) {
                           .light = light_,
                           .yaw_rad = state_.yaw_rad,
                           .exposure_stops = state_.exposure_stops,
-                          .sky = state_.sky};
+                          .sky = state_.sky,
+                          .depth_limits = state_.depth_limits};
   const std::uint64_t ticket = ++newest_ticket_;
   worker_.submit([this, wish, divisor, ticket, renderer = renderer_] {
     SplatPicture picture;

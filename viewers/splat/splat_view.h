@@ -35,6 +35,8 @@ class SplatView final : public PictureCanvas {
   void setYaw(float yaw_rad);
   void setSky(bool shown);
   void setPhotoOpacity(float opacity);
+  // Holds the limits of the depth that is seen now, over cameras and frames; without effect while none is.
+  void lockDepth(bool on);
   void lookThrough(std::optional<ViewIndex> view);
   // The first direction, with the subject filling the view.
   void goHome();
