@@ -406,7 +406,7 @@ TEST(CaptureCheck, SaysInTwoHalvesWhatItSaysAtOnce) {
   put(dir / "images/b/000004.png", whole.substr(0, whole.size() - 9));
   const ImportedCapture capture = openCapture(dir.path());
   CheckReport r = checkDescription(dir.path(), capture);
-  EXPECT_EQ(r.cameras.size(), 2u);
+  ASSERT_EQ(r.cameras.size(), 3u);
   EXPECT_EQ(r.cameras[0].frames, 0) << "no picture was looked at";
   EXPECT_THAT(r.warnings, ::testing::Not(::testing::Contains(HasSubstr("truncated"))));
   double fraction = 0;
