@@ -2,7 +2,6 @@
 #include "ui/project_panel.h"
 
 #include <QApplication>
-#include <QComboBox>
 #include <QFontMetrics>
 #include <QGridLayout>
 #include <QHeaderView>
@@ -16,6 +15,7 @@
 
 #include "ui/elided_label.h"
 #include "ui/evaluation.h"
+#include "ui/quiet_combo.h"
 #include "ui/theme.h"
 #include "ui/words.h"
 
@@ -40,7 +40,7 @@ ElidedLabel* heading(const QString& text) {
   return label;
 }
 
-// Letters and digits belong to the views; what a closed box or a list takes of them is lost to these.
+// Letters and digits belong to the views; what a list takes of them is lost to these.
 bool isTyping(const QKeyEvent& key) {
   const bool plain = !(key.modifiers() & ~(Qt::ShiftModifier | Qt::KeypadModifier));
   return plain && key.key() != Qt::Key_Space && !key.text().isEmpty() && key.text()[0].isPrint();
@@ -54,17 +54,14 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
       name_(heading({})),
       scores_title_(heading("Last evaluation")),
       facts_(new QLabel),
-      frames_(new QComboBox),
+      frames_(new QuietCombo),
       scores_(new QGridLayout),
       cameras_(new QTreeWidget) {
   facts_->setObjectName("quiet");
   facts_->setWordWrap(true);
   facts_->setMinimumWidth(1);  // a long name does not make the panel wide
-  frames_->setFocusPolicy(Qt::StrongFocus);
   frames_->setAccessibleName("Frame");
-  frames_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   frames_->setMinimumContentsLength(kLeastLetters);
-  frames_->installEventFilter(this);
   cameras_->setHeaderHidden(true);
   cameras_->setColumnCount(3);
   cameras_->header()->setStretchLastSection(false);
@@ -175,9 +172,9 @@ void ProjectPanel::refresh() {
     frames_->setCurrentIndex(model_.frame().value);
   }
   frames_->setEnabled(frames_->count() > 1);
-  frames_->setToolTip(frames_->count() == 0   ? "Open a capture or a project first"
-                      : frames_->count() == 1 ? "The capture has this frame alone"
-                                              : "The frame in view");
+  frames_->setHelp(frames_->count() == 0   ? "Open a capture or a project first"
+                   : frames_->count() == 1 ? "The capture has this frame alone"
+                                           : "The frame in view");
   refreshFacts();
   fillCameras();
   refreshScores();

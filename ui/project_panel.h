@@ -10,7 +10,6 @@
 
 #include "ui/project_model.h"
 
-class QComboBox;
 class QGridLayout;
 class QLabel;
 class QTreeWidget;
@@ -19,6 +18,7 @@ class QTreeWidgetItem;
 namespace beam {
 
 class ElidedLabel;
+class QuietCombo;
 
 class ProjectPanel final : public QWidget {
   Q_OBJECT
@@ -54,7 +54,7 @@ class ProjectPanel final : public QWidget {
   ProjectModel& model_;
   ElidedLabel *name_, *scores_title_;
   QLabel* facts_;
-  QComboBox* frames_;
+  QuietCombo* frames_;
   QGridLayout* scores_;
   QTreeWidget* cameras_;
   std::map<std::string, QStringList> problems_;

@@ -3,7 +3,6 @@
 
 #include <QAbstractItemView>
 #include <QAction>
-#include <QComboBox>
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QMenu>
@@ -16,6 +15,7 @@
 #include <algorithm>
 
 #include "ui/elided_label.h"
+#include "ui/quiet_combo.h"
 #include "ui/theme.h"
 #include "ui/words.h"
 
@@ -26,7 +26,6 @@ constexpr int kSides = 16, kSpacing = 4;
 constexpr int kLeastLetters = 5;     // of the words beside the buttons
 constexpr double kDockShare = 0.36;  // of the window's height that the dock may insist on
 constexpr double kOtherLines = 6.5;  // lines of text that its title, tabs and the transport row take
-constexpr int kCurveLetters = 6;
 
 QToolButton* button(QHBoxLayout* row, const QString& name) {
   auto* made = new QToolButton;
@@ -119,11 +118,9 @@ QHBoxLayout* TimelinePanel::makeTransport() {
   where_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   where_->setLeastLetters(kLeastLetters);
   row->addWidget(where_, 1);
-  curves_ = new QComboBox;
+  curves_ = new QuietCombo;
   curves_->setAccessibleName("Curve");
   curves_->setFocusPolicy(Qt::TabFocus);
-  curves_->setMinimumContentsLength(kCurveLetters);
-  curves_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   curves_->addItem("no curve", QString());
   row->addWidget(curves_);
   return row;
@@ -306,9 +303,9 @@ bool TimelinePanel::chooseCurve(const QString& name) {
 void TimelinePanel::showCurve() {
   const bool any = curves_->currentIndex() > 0;
   lanes_->setCurve(curves_->currentData().toString(), any ? curves_->currentText() : QString());
-  curves_->setToolTip(curves_->count() < 2 ? "There are no curves yet: they come with the first result"
-                      : any                ? curves_->currentText() + "\nPress the curve to go to a frame"
-                                           : "The curve below the lanes; press it to go to a frame");
+  // A name that is cut stands in the tooltip already.
+  curves_->setHelp(curves_->count() < 2 ? "There are no curves yet: they come with the first result"
+                                        : "The curve below the lanes; press it to go to a frame");
   fold();
 }
 

@@ -12,7 +12,6 @@
 #include "ui/timeline_lanes.h"
 
 class QAction;
-class QComboBox;
 class QHBoxLayout;
 class QKeyEvent;
 class QScrollArea;
@@ -21,6 +20,7 @@ class QToolButton;
 namespace beam {
 
 class ElidedLabel;
+class QuietCombo;
 
 class TimelinePanel final : public QWidget {
   Q_OBJECT
@@ -69,7 +69,7 @@ class TimelinePanel final : public QWidget {
   std::vector<QToolButton*> foldable_;  // the first is the last to go
   QToolButton* more_ = nullptr;         // what is folded away
   ElidedLabel* where_ = nullptr;
-  QComboBox* curves_ = nullptr;
+  QuietCombo* curves_ = nullptr;
   QString note_;
   std::shared_ptr<const TakeSurvey> survey_;  // what the lanes show
 };
