@@ -26,6 +26,8 @@ struct FrameValues {
   std::shared_ptr<const Materials> materials;
   std::shared_ptr<const Mesh> mesh;
   bool interpolated = false;  // between two solved frames of a scout run
+  bool stale = false;         // not what the settings in force would give; `stale_note` says what of it
+  std::string stale_note = {};
 };
 
 std::uint64_t bytesOf(const FrameValues& values);

@@ -90,13 +90,17 @@ ImagePage::ImagePage(const ProjectModel& model, QWidget* parent)
 
 QWidget* ImagePage::makeChoice() {
   auto* widget = new QWidget;
-  QHBoxLayout* row = rowIn(widget);
-  row->addWidget(quiet("Camera"));
-  row->addWidget(cameras_, 1);
-  for (int side = 0; side < 2; ++side) {
-    row->addWidget(quiet(side == 0 ? "A" : "B"));
-    row->addWidget(pictures_[side], 2);
-  }
+  choice_layout_ = rowIn(widget);
+  const auto add = [this](const QString& words, QuietCombo* box, int stretch) {
+    auto* pair = new QWidget;
+    QHBoxLayout* row = rowIn(pair);
+    row->addWidget(quiet(words));
+    row->addWidget(box, 1);
+    choice_layout_->addWidget(pair, stretch);
+  };
+  add("Camera", cameras_, 1);
+  add("A", pictures_[0], 2);
+  add("B", pictures_[1], 2);
   return widget;
 }
 
@@ -168,15 +172,21 @@ void ImagePage::arrangeRows() {
   for (QLineEdit* line : limits_) line->setFixedWidth(line->fontMetrics().horizontalAdvance("-000.000") + 16);
   const QMargins margins = row_layout_->contentsMargins();
   const int around = margins.left() + margins.right();
-  const int choice = choice_->minimumSizeHint().width(), comparing = comparing_->minimumSizeHint().width(),
-            holding = holding_->minimumSizeHint().width();
+  int choice = -kSpacing_px, widest_choice = 0;
+  for (int i = 0; i < choice_layout_->count(); ++i) {
+    const int pair = choice_layout_->itemAt(i)->minimumSize().width();
+    choice += pair + kSpacing_px;
+    widest_choice = std::max(widest_choice, pair);
+  }
+  const int comparing = comparing_->minimumSizeHint().width(), holding = holding_->minimumSizeHint().width();
   // A choice is worth a row of its own rather than an elided name.
   const int names = 30 * fontMetrics().averageCharWidth();
   const int judging = comparing + kSpacing_px + holding;
   const auto direction = [&](int needed) {
     return width() >= needed + around ? QBoxLayout::LeftToRight : QBoxLayout::TopToBottom;
   };
-  rows_->setMinimumWidth(std::max({choice, comparing, holding}) + around);
+  rows_->setMinimumWidth(std::max({widest_choice, comparing, holding}) + around);
+  choice_layout_->setDirection(direction(choice));
   row_layout_->setDirection(direction(choice + names + kSpacing_px + judging));
   judging_layout_->setDirection(direction(judging));
 }

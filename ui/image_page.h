@@ -77,6 +77,7 @@ class ImagePage final : public QWidget {
   QCheckBox* lock_;
   std::array<QLineEdit*, 2> limits_;  // low, high
   QString limits_unit_;
+  QBoxLayout* choice_layout_;
   QWidget *choice_, *comparing_, *holding_, *rows_;
   QBoxLayout *row_layout_, *judging_layout_;
   ImageView* view_;

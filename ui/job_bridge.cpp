@@ -20,9 +20,9 @@ JobBridge::JobBridge(QObject* parent) : QObject(parent) {
 
 void JobBridge::start(const Project& project, const RunRequest& request,
                       std::shared_ptr<ComputeDevice> device) {
+  shown_ = runner_.preview().latest();  // of the run before; a quick one shows its first at once
   runner_.start(project, request, std::move(device));
   busy_ = true;
-  shown_ = runner_.preview().latest();
   timer_.start();
   Q_EMIT started();
 }
@@ -34,7 +34,7 @@ void JobBridge::requestStopAfter(StopAfter what) { runner_.requestStopAfter(what
 void JobBridge::drain() {
   if (auto preview = runner_.preview().latest(); preview && preview != shown_) {
     shown_ = std::move(preview);
-    Q_EMIT previewChanged(shown_);
+    Q_EMIT previewChanged(*shown_);
   }
   while (std::optional<JobEvent> event = runner_.tryPop()) tell(*event);
 }

@@ -31,7 +31,7 @@ class JobBridge final : public QObject {
   void stepFailed(const beam::StepFailed& failure);
   void warned(const QString& text);
   void waiting(const beam::JobWaiting& waiting);
-  void previewChanged(const std::shared_ptr<const beam::GaussianCloud>& cloud);
+  void previewChanged(const beam::JobPreview& preview);
   void finished(const beam::JobFinished& outcome);
 
  private:
@@ -41,7 +41,7 @@ class JobBridge final : public QObject {
   Runner runner_;
   QTimer timer_;
   bool busy_ = false;
-  std::shared_ptr<const GaussianCloud> shown_;
+  std::shared_ptr<const JobPreview> shown_;
 };
 
 }  // namespace beam

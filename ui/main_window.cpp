@@ -3,24 +3,33 @@
 
 #include <unistd.h>
 
+#include <QAbstractSpinBox>
 #include <QCloseEvent>
+#include <QComboBox>
 #include <QDockWidget>
 #include <QDragEnterEvent>
+#include <QGuiApplication>
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QLineEdit>
+#include <QMenuBar>
 #include <QMimeData>
-#include <QScrollArea>
-#include <QSettings>
+#include <QScreen>
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QTabBar>
 #include <QTabWidget>
-#include <QToolBar>
+#include <QTextEdit>
 #include <QUrl>
 #include <QVBoxLayout>
 
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/log.h"
 #include "ui/display_panel.h"
+#include "ui/elided_label.h"
 #include "ui/image_page.h"
 #include "ui/log_panel.h"
 #include "ui/message_panel.h"
@@ -40,6 +49,7 @@ namespace {
 
 constexpr const char* kViewNames[] = {"splat", "image", "scene"};
 constexpr const char* kScopeNames[] = {"frame", "range", "take", "scout"};
+constexpr QSize kUsualSize(1600, 1000), kLeastSize(1000, 640);
 
 QString machineText(const StudioServices& services) {
   const double memory_gb =
@@ -51,7 +61,12 @@ QString machineText(const StudioServices& services) {
       .arg(memory_gb, 0, 'f', 0);
 }
 
-bool isPanorama(const fs::path& path) { return path.extension() == ".exr" || path.extension() == ".hdr"; }
+// Letters and digits typed there are meant for it.
+bool takesText(const QWidget* widget) {
+  const auto* combo = qobject_cast<const QComboBox*>(widget);
+  return qobject_cast<const QLineEdit*>(widget) || qobject_cast<const QTextEdit*>(widget) ||
+         qobject_cast<const QAbstractSpinBox*>(widget) || (combo && combo->isEditable());
+}
 
 }  // namespace
 
@@ -71,68 +86,91 @@ std::optional<RunScope> runScopeNamed(std::string_view name) {
 
 MainWindow::MainWindow(StudioServices services, Layout layout)
     : services_(services),
+      memory_(layout == Layout::Remembered),
       model_(std::move(services)),
       player_(model_, [this] { return viewFollows(); }),
-      joints_(model_),
-      layout_(layout) {
+      joints_(model_) {
   setAcceptDrops(true);
-  setMinimumSize(1000, 640);
-  resize(1600, 1000);
+  setMinimumSize(kLeastSize);
   makeParts();
+  makeCommands();
+  makeTop();
   makeCentre();
   makeDocks();
   makeMenus();
   connectModel();
   connectViews();
   connectJob();
+  connectTask();
+  connectWatch();
   connectPlayer();
+  fitToScreen();
   fresh_state_ = saveState();
-  if (layout_ == Layout::Remembered) restoreLayout();
-  start_->setRecent(QSettings().value("recent").toStringList());
+  if (memory_.lasts()) restoreLayout();
+  showPanels(false);
+  recallTimes();
+  showRecent();
+  refreshCommands();
   showTitle();
   showStatus();
 }
 
-MainWindow::~MainWindow() = default;
+// Parts that still have something to tell when they go (a model that saves) must not reach those that are
+// gone.
+MainWindow::~MainWindow() {
+  for (QObject* part :
+       {static_cast<QObject*>(&model_), static_cast<QObject*>(&lights_), static_cast<QObject*>(&job_),
+        static_cast<QObject*>(&task_), static_cast<QObject*>(&player_), static_cast<QObject*>(&watch_),
+        static_cast<QObject*>(&problems_), static_cast<QObject*>(&forecast_)})
+    part->disconnect(this);
+}
 
 void MainWindow::makeParts() {
   rail_ = new StageRail;
   run_bar_ = new RunBar;
   run_bar_->setStages(services_.pipeline->stages.infos());
   message_ = new MessagePanel;
-  start_ = new StartPage(static_cast<bool>(services_.make_sample), machineText(services_));
+  start_ = new StartPage(machineText(services_));
   splat_ = new SplatView(services_.view_device);
   images_ = new ImagePage(model_);
   scene_ = new SceneView;
   rail_->setStages(stagesWithoutTake(services_.pipeline->stages.infos()));
   rail_->select("surface");
+  rail_->setEnabled(false);
 }
 
-void MainWindow::makeCentre() {
-  auto* bar = new QToolBar("Stages");
-  bar->setObjectName("stages");
-  bar->setMovable(false);
-  bar->setContextMenuPolicy(Qt::PreventContextMenu);
-  auto* inside = new QWidget;
-  auto* row = new QHBoxLayout(inside);
-  row->setContentsMargins(2, 0, 2, 0);
+// Menus above stages and run bar, over the whole width. No tool bar: one that is too narrow hides what does
+// not fit.
+void MainWindow::makeTop() {
+  auto* top = new QWidget;
+  auto* column = new QVBoxLayout(top);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  menus_ = new QMenuBar;
+  column->addWidget(menus_);
+  auto* stages = new QFrame;
+  stages->setObjectName("stages");
+  auto* row = new QHBoxLayout(stages);
+  row->setContentsMargins(8, 4, 8, 4);
   row->setSpacing(14);
   row->addWidget(rail_);
   row->addWidget(run_bar_, 1);
-  bar->addWidget(inside);
-  addToolBar(Qt::TopToolBarArea, bar);
+  column->addWidget(stages);
+  setMenuWidget(top);
+}
 
+void MainWindow::makeCentre() {
   view_tabs_ = new QTabBar;
+  view_tabs_->setObjectName("views");
   view_tabs_->setExpanding(false);
   view_tabs_->setDrawBase(false);
-  view_tabs_->setFocusPolicy(Qt::NoFocus);
   views_ = new QStackedWidget;
   const auto add = [this](QWidget* view, const char* title, const char* tip) {
     views_->addWidget(view);
     view_tabs_->setTabToolTip(view_tabs_->addTab(title), tip);
   };
   add(splat_, "Splats", "The Gaussians, lit or by channel (Ctrl+1)");
-  add(images_, "Images", "Photographs and maps, two under a wipe (Ctrl+2)");
+  add(images_, "Images", "Photographs and maps, two under a wipe, or their difference (Ctrl+2)");
   add(scene_, "Scene", "Cameras, seed points, ellipsoids and mesh in the world (Ctrl+3)");
   connect(view_tabs_, &QTabBar::currentChanged, views_, &QStackedWidget::setCurrentIndex);
   auto* work = new QWidget;
@@ -167,43 +205,66 @@ void MainWindow::makeDocks() {
   project_panel_ = new ProjectPanel(model_);
   settings_ = new SettingsPanel(model_);
   auto* display = new DisplayPanel(*splat_, lights_);
-  connect(display, &DisplayPanel::openLightWanted, this, &MainWindow::openLight);
-  auto* inspector = new QTabWidget;
-  inspector->setDocumentMode(true);
-  inspector->tabBar()->setDrawBase(false);
-  inspector->addTab(display, "Display");
-  inspector->addTab(settings_, "Settings");
-  connect(rail_, &StageRail::chosen, this, [this, inspector](const std::string& stage) {
+  connect(display, &DisplayPanel::openLightWanted, commands_.action("open_light"), &QAction::trigger);
+  inspector_ = new QTabWidget;
+  inspector_->setDocumentMode(true);
+  inspector_->tabBar()->setDrawBase(false);
+  inspector_->addTab(display, "Display");
+  inspector_->addTab(settings_, "Settings");
+  inspector_->setTabToolTip(0, "How the splat view shows: channel, light, exposure");
+  inspector_->setTabToolTip(1, "The settings of the chosen stage");
+  connect(rail_, &StageRail::chosen, this, [this](const std::string& stage) {
     if (!settings_->setStage(stage)) rail_->select(settings_->stage());
-    inspector->setCurrentWidget(settings_);
+    inspector_->setCurrentWidget(settings_);
   });
-  connect(settings_, &SettingsPanel::attentionWanted, inspector,
-          [this, inspector] { inspector->setCurrentWidget(settings_); });
+  connect(settings_, &SettingsPanel::attentionWanted, inspector_,
+          [this] { inspector_->setCurrentWidget(settings_); });
   log_ = new LogPanel;
   QDockWidget* left = dock("project", "Project", project_panel_, Qt::LeftDockWidgetArea);
-  QDockWidget* right = dock("inspector", "Inspector", inspector, Qt::RightDockWidgetArea);
+  QDockWidget* right = dock("inspector", "Inspector", inspector_, Qt::RightDockWidgetArea);
   QDockWidget* bottom = dock("log", "Log", log_, Qt::BottomDockWidgetArea);
-  resizeDocks({left, right}, {280, 340}, Qt::Horizontal);
   timeline_ = new TimelinePanel(model_, player_);
   QDockWidget* timeline = dock("timeline", "Timeline", timeline_, Qt::BottomDockWidgetArea);
   tabifyDockWidget(timeline, bottom);
   timeline->raise();
-  resizeDocks({timeline}, {235}, Qt::Vertical);
+  resizeDocks({left, right}, {280, 340}, Qt::Horizontal);
+  auto* problems = new ProblemsPanel(problems_);
+  problems_dock_ = dock("problems", "Problems", problems, Qt::BottomDockWidgetArea);
+  connect(problems, &ProblemsPanel::titleChanged, problems_dock_, &QDockWidget::setWindowTitle);
+  tabifyDockWidget(bottom, problems_dock_);
+  timeline->raise();
   settings_->setStage(rail_->selected());
-  reading_ = new QLabel;
-  state_words_ = new QLabel;
+  reading_ = new ElidedLabel;
+  state_words_ = new ElidedLabel;
+  for (ElidedLabel* words : {reading_, state_words_})
+    words->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  state_words_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   statusBar()->addWidget(reading_, 1);
-  statusBar()->addPermanentWidget(state_words_);
+  statusBar()->addWidget(state_words_, 1);
   statusBar()->setSizeGripEnabled(false);
+}
+
+// As large as usual, on a smaller screen all of that; the frame that the desktop draws has to fit, too.
+void MainWindow::fitToScreen() {
+  constexpr QSize kFrame(16, 48);
+  const QScreen* screen = QGuiApplication::primaryScreen();
+  const QSize room = screen ? screen->availableGeometry().size() - kFrame : kUsualSize;
+  resize(kUsualSize.boundedTo(room).expandedTo(kLeastSize));
+  resizeDocks({findChild<QDockWidget*>("timeline")}, {std::clamp(27 * height() / 100, 170, 260)},
+              Qt::Vertical);
 }
 
 void MainWindow::showView(StudioView view) {
   view_tabs_->setCurrentIndex(static_cast<int>(view));
-  QWidget* const widgets[] = {splat_, &images_->view(), scene_};
-  widgets[static_cast<int>(view)]->setFocus();
+  if (model_.isOpen()) viewWidget()->setFocus();
 }
 
 StudioView MainWindow::shownView() const { return static_cast<StudioView>(views_->currentIndex()); }
+
+QWidget* MainWindow::viewWidget() const {
+  QWidget* const widgets[] = {splat_, &images_->view(), scene_};
+  return widgets[static_cast<int>(shownView())];
+}
 
 bool MainWindow::viewSettled() const {
   switch (shownView()) {
@@ -222,26 +283,14 @@ bool MainWindow::viewFollows() const {
 }
 
 bool MainWindow::settled() const {
-  if (sample_.busy() || !model_.settled() || !lights_.settled()) return false;
+  if (task_.busy() || !model_.settled() || !lights_.settled()) return false;
   return !model_.isOpen() || viewSettled();
-}
-
-void MainWindow::open(const fs::path& path) {
-  if (isPanorama(path)) {
-    lights_.add(path);
-    return;
-  }
-  if (job_.busy()) {
-    say("A run is going on", "Cancel it or wait for its end, then open another project.");
-    return;
-  }
-  model_.open(path);
 }
 
 // Keys that no text field or list took go to the view that is seen.
 void MainWindow::keyPressEvent(QKeyEvent* event) {
   bool taken = false;
-  if (centre_->currentIndex() == 1) {
+  if (centre_->currentIndex() == 1 && !takesText(focusWidget())) {
     switch (shownView()) {
       case StudioView::Splat:
         taken = splat_->handleKey(*event);
@@ -273,39 +322,58 @@ void MainWindow::dropEvent(QDropEvent* event) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (layout_ == Layout::Remembered) {
-    QSettings settings;
-    settings.setValue("geometry", saveGeometry());
-    settings.setValue("docks", saveState());
-    settings.setValue("view", views_->currentIndex());
-  }
+  if (!mayClose()) return event->ignore();
+  memory_.keepBytes("geometry", saveGeometry());
+  memory_.keepBytes("docks", panels_state_.isEmpty() ? saveState() : panels_state_);
+  memory_.keepNumber("view", views_->currentIndex());
+  rememberProject();
   job_.requestStop();
-  sample_.requestStop();
+  task_.requestStop();
   event->accept();
 }
 
+void MainWindow::recallLook() {
+  chooseLook(static_cast<Theme>(std::clamp(memory_.number("theme", static_cast<int>(Theme::Dark)), 0, 2)),
+             std::clamp(memory_.number("text_percent", 100), 100, 150));
+}
+
 void MainWindow::restoreLayout() {
-  const QSettings settings;
-  restoreGeometry(settings.value("geometry").toByteArray());
-  restoreState(settings.value("docks").toByteArray());
-  view_tabs_->setCurrentIndex(settings.value("view", 0).toInt());
+  restoreGeometry(memory_.bytes("geometry"));
+  restoreState(memory_.bytes("docks"));
+  view_tabs_->setCurrentIndex(memory_.number("view", 0));
 }
 
-void MainWindow::remember(const QString& folder) {
-  if (layout_ != Layout::Remembered) return;
-  constexpr int kMost = 6;
-  QSettings settings;
-  QStringList recent = settings.value("recent").toStringList();
-  recent.removeAll(folder);
-  recent.prepend(folder);
-  while (recent.size() > kMost) recent.removeLast();
-  settings.setValue("recent", recent);
-  start_->setRecent(recent);
+void MainWindow::showPanels(bool shown) {
+  if (shown != panels_state_.isEmpty()) {
+    if (shown) {
+      restoreState(panels_state_);
+      panels_state_.clear();
+    } else {
+      panels_state_ = saveState();
+      for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->hide();
+    }
+  }
+  for (QDockWidget* dock : findChildren<QDockWidget*>()) {
+    dock->toggleViewAction()->setEnabled(shown);
+    dock->toggleViewAction()->setToolTip(shown ? "Show or hide the panel " + dock->objectName()
+                                               : "Panels are shown once a capture or project is open.");
+  }
 }
 
-void MainWindow::say(const QString& title, const QString& text) {
-  message_->show(MessagePanel::Kind::Error, title, text);
+void MainWindow::recallTimes() {
+  const QString kept = memory_.text("step_times");
+  if (kept.isEmpty()) return;
+  try {
+    forecast_.setMachineTimes(parseStepTimes(kept.toStdString()));
+  } catch (const Error& e) {
+    logDebug("the times of earlier runs are not readable: {}", e.what());
+  }
+}
+
+void MainWindow::say(const QString& title, const QString& text, QAction* remedy) {
+  message_->show(MessagePanel::Kind::Error, title, text, remedy);
   log_->add(LogLevel::Error, title + ": " + text);
+  problems_.add(problemOf(Problem::Kind::Error, title + ": " + text));
 }
 
 }  // namespace beam

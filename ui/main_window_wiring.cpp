@@ -1,45 +1,120 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who hears whom: model to panels and views, views to panels, job to everything.
-#include <QLabel>
+#include <QRegularExpression>
 #include <QStackedWidget>
 
 #include <algorithm>
 
+#include "ui/elided_label.h"
 #include "ui/image_page.h"
 #include "ui/log_panel.h"
 #include "ui/main_window.h"
 #include "ui/message_panel.h"
 #include "ui/project_panel.h"
 #include "ui/run_bar.h"
-#include "ui/settings_panel.h"
 #include "ui/stage_rail.h"
+#include "ui/start_page.h"
 #include "ui/timeline_panel.h"
+#include "ui/words.h"
 #include "viewers/image/image_view.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
 
 namespace beam {
+namespace {
+
+const char* const kStaleWords = "stale: made with other settings";
+
+}  // namespace
 
 void MainWindow::connectModel() {
-  connect(&model_, &ProjectModel::openingStarted, this,
-          [this](const QString& path) { reading_->setText("Opening " + path); });
-  connect(&model_, &ProjectModel::opened, this, &MainWindow::showOpened);
-  connect(&model_, &ProjectModel::failed, this, [this](const QString& what, const QString& why) {
-    reading_->clear();
-    say(what, why);
+  connect(&model_, &ProjectModel::openingStarted, this, [this](const QString& path) {
+    reading_->setText("Opening " + path);
+    refreshCommands();
   });
-  connect(&model_, &ProjectModel::stagesChanged, this, &MainWindow::showStages);
+  connect(&model_, &ProjectModel::opened, this, &MainWindow::showOpened);
+  connect(&model_, &ProjectModel::closed, this, &MainWindow::showClosed);
+  connect(&model_, &ProjectModel::failed, this, [this](const QString& what, const QString& why) {
+    reading_->setText({});
+    say(what, why);
+    refreshCommands();
+  });
+  connect(&model_, &ProjectModel::broken, this, [this](const QString& folder, const QString& why) {
+    reading_->setText({});
+    broken_ = folder.toStdString();
+    refreshCommands();
+    say("The project cannot be read", why, commands_.action("earlier_versions"));
+  });
+  connect(&model_, &ProjectModel::stagesChanged, this, [this] {
+    showStages();
+    askForecast();
+  });
   connect(&model_, &ProjectModel::valuesChanged, this, &MainWindow::showValues);
-  connect(&model_, &ProjectModel::settingsChanged, this, &MainWindow::showTitle);
+  connect(&model_, &ProjectModel::settingsChanged, this, [this] {
+    showTitle();
+    refreshCommands();
+  });
   connect(&model_, &ProjectModel::frameChanged, this, [this] {
     splat_->setCapture(model_.capture(), model_.frame());
+    if (preview_.cloud) showSplats();  // another frame's preview does not stay
     showStatus();
   });
+  connect(&player_, &Player::rangeChanged, this, [this] {
+    refreshCommands();
+    askForecast();
+  });
+  connect(&forecast_, &RunForecast::told, this, &MainWindow::showForecast);
   connect(&lights_, &LightLibrary::lightChanged, this, [this] {
     splat_->setLight(lights_.light(), lights_.name(), lights_.reading());
     images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading()});
   });
-  connect(&lights_, &LightLibrary::failed, this, &MainWindow::say);
+  connect(&lights_, &LightLibrary::failed, this,
+          [this](const QString& what, const QString& why) { say(what, why); });
+}
+
+void MainWindow::connectWatch() {
+  connect(&watch_, &CaptureWatch::lost, this, [this] {
+    model_.setCaptureThere(false);
+    showCaptureLost();
+  });
+  connect(&watch_, &CaptureWatch::back, this, [this] {
+    message_->hide();
+    // A project that was opened without it knows only what its results tell of it.
+    model_.project().withoutCapture() ? model_.open(model_.project().folder()) : model_.setCaptureThere(true);
+    refreshCommands();
+  });
+  connect(&watch_, &CaptureWatch::checked, this, [this](const QStringList& warnings) {
+    for (const QString& warning : warnings) warn(warning);
+  });
+  connect(&problems_, &ProblemList::changed, this, &MainWindow::showProblems);
+}
+
+// By the words of the message, which names what it is about.
+Problem MainWindow::problemOf(Problem::Kind kind, const QString& text) const {
+  Problem problem{.kind = kind, .text = text};
+  static const QRegularExpression kCamera("camera (\\S+?)[,;:.]?(\\s|$)"),
+      kFrame("frame (\\S+?)[,;:.]?(\\s|$)");
+  if (model_.capture()) {
+    const QString camera = kCamera.match(text).captured(1), frame = kFrame.match(text).captured(1);
+    for (const View& view : model_.capture()->views) {
+      if (view.name == camera.toStdString()) problem.camera = view.name;
+    }
+    for (const std::string& name : model_.capture()->frames) {
+      if (name == frame.toStdString()) problem.frame = frame;
+    }
+  }
+  problem.stage = run_.running_stage;
+  return problem;
+}
+
+void MainWindow::warn(const QString& text) {
+  log_->add(LogLevel::Warning, text);
+  problems_.add(problemOf(Problem::Kind::Warning, text));
+}
+
+void MainWindow::showProblems() {
+  rail_->setWarnings(problems_.countsByStage());
+  project_panel_->setProblems(problems_.textsByCamera());
 }
 
 void MainWindow::connectViews() {
@@ -48,6 +123,7 @@ void MainWindow::connectViews() {
     if (views_->currentWidget() == images_)
       images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading()});
     showValuesIn(shownView());
+    refreshCommands();
   });
   connect(scene_, &SceneView::jointPicked, &joints_, &JointSource::pick);
   connect(&joints_, &JointSource::changed, this, [this] {
@@ -55,33 +131,37 @@ void MainWindow::connectViews() {
     scene_->setJoints(shown.trails, shown.hint);
     scene_->setInfluence(shown.influence ? joints_.picked() : -1, shown.influence);
   });
-  connect(scene_, &SceneView::cameraPicked, this, [this](ViewIndex view) {
-    project_panel_->mark(view);
-    images_->choose(view);
-  });
-  connect(scene_, &SceneView::cameraActivated, splat_, &SplatView::lookThrough);
-  connect(splat_, &SplatView::hovered, reading_, &QLabel::setText);
+  connect(splat_, &SplatView::hovered, reading_, &ElidedLabel::setText);
   connect(splat_, &SplatView::pictureShown, this, &MainWindow::showStatus);
-  connect(&images_->view(), &ImageView::hovered, reading_, &QLabel::setText);
+  connect(&images_->view(), &ImageView::hovered, reading_, &ElidedLabel::setText);
   connect(splat_, &SplatView::stateChanged, this, [this](const ViewState& state) {
-    project_panel_->mark(state.look_through);
-    if (!state.look_through) return;
-    images_->choose(*state.look_through);
-    scene_->markCamera(state.look_through);
+    commands_.refresh();
+    if (state.look_through == looked_through_) return;
+    looked_through_ = state.look_through;
+    if (looked_through_) showCamera(*looked_through_);
   });
+  connect(scene_, &SceneView::cameraPicked, this, &MainWindow::showCamera);
+  connect(scene_, &SceneView::cameraActivated, splat_, &SplatView::lookThrough);  // which shows it
+  connect(images_, &ImagePage::cameraChosen, this, &MainWindow::showCamera);
+  connect(project_panel_, &ProjectPanel::cameraChosen, this, &MainWindow::showCamera);
   connect(project_panel_, &ProjectPanel::cameraActivated, this, [this](ViewIndex view) {
-    images_->choose(view);
-    splat_->lookThrough(view);
-    scene_->lookThrough(view);
+    showCamera(view);
+    shownView() == StudioView::Scene ? scene_->lookThrough(view) : splat_->lookThrough(view);
   });
 }
 
+// One camera is the chosen one in the list and in all views.
+void MainWindow::showCamera(ViewIndex view) {
+  const View& camera = model_.capture()->views[static_cast<std::size_t>(view.value)];
+  reading_->setText(QString("Camera %1, %2: a double click looks through it")
+                        .arg(QString::fromStdString(camera.name),
+                             camera.split == Split::Test ? "held out" : "for training"));
+  project_panel_->mark(view);
+  scene_->markCamera(view);
+  images_->choose(view);
+}
+
 void MainWindow::connectJob() {
-  connect(run_bar_, &RunBar::runWanted, this, [this](const QString& until) { run(until.toStdString()); });
-  connect(run_bar_, &RunBar::rangeWanted, this, [this] { run({}, RunScope::Range); });
-  connect(run_bar_, &RunBar::scoutWanted, this, &MainWindow::scout);
-  connect(run_bar_, &RunBar::takeWanted, this, [this] { run({}, RunScope::Take); });
-  connect(run_bar_, &RunBar::stopWanted, this, &MainWindow::cancelRun);
   connect(&job_, &JobBridge::stageStarted, this,
           [this](const StageStarted& stage) { showRunning(stage.stage, stage.frame); });
   connect(&job_, &JobBridge::progressed, this, [this](const StepProgress& progress) {
@@ -91,85 +171,44 @@ void MainWindow::connectJob() {
   });
   connect(&job_, &JobBridge::stepFinished, this, [this] { model_.refresh(); });
   connect(&job_, &JobBridge::stepFailed, this, [this](const StepFailed& failure) {
-    say("Frame " + QString::fromStdString(failure.ref.frame_name) + " failed at " +
-            QString::fromStdString(failure.ref.step),
+    say(QString("Frame %1 failed at %2")
+            .arg(QString::fromStdString(failure.ref.frame_name),
+                 stepTitle(services_.pipeline->stages.infos(), failure.ref.step)),
         QString::fromStdString(failure.message));
+    model_.refresh();
   });
-  connect(&job_, &JobBridge::warned, this,
-          [this](const QString& text) { log_->add(LogLevel::Warning, text); });
-  connect(&job_, &JobBridge::previewChanged, this, [this](const std::shared_ptr<const GaussianCloud>& cloud) {
-    // Only where its frame is looked at: other frames may be watched while this one is solved.
-    previewing_ = run_.running_frame == model_.frame().value && !player_.playing();
-    if (!previewing_) return;
-    splat_->setScene(
-        {cloud, nullptr},
-        QString("frame %1 · live preview, %L2 Gaussians").arg(model_.frameName()).arg(cloud->size()));
-    if (views_->currentWidget() == scene_) scene_->setCloud(cloud);
+  connect(&job_, &JobBridge::warned, this, &MainWindow::warn);
+  connect(&job_, &JobBridge::waiting, this, [this](const JobWaiting& waiting) {
+    run_bar_->showWaiting(QString("waits for %1, which %2 computes")
+                              .arg(waiting.ref.frame
+                                       ? "frame " + QString::fromStdString(waiting.ref.frame_name)
+                                       : stepTitle(services_.pipeline->stages.infos(), waiting.ref.step),
+                                   QString::fromStdString(waiting.holder)));
   });
+  connect(&job_, &JobBridge::previewChanged, this, &MainWindow::takePreview);
   connect(&job_, &JobBridge::finished, this, &MainWindow::showFinished);
-  connect(&sample_, &SampleMaker::progressed, run_bar_, &RunBar::showReport);
-  connect(&sample_, &SampleMaker::done, this, [this](const QString& folder) {
-    run_bar_->showFinished("The sample is ready");
-    open(folder.toStdString());
+}
+
+void MainWindow::connectTask() {
+  connect(&task_, &BackgroundTask::progressed, run_bar_, &RunBar::showReport);
+  connect(&task_, &BackgroundTask::done, this, [this] {
+    stopping_ = false;
+    run_bar_->showFinished(task_words_ + " is ready");
+    refreshCommands();
   });
-  connect(&sample_, &SampleMaker::failed, this, [this](const QString& why) {
-    run_bar_->showFinished(why.isEmpty() ? "Cancelled" : "The sample was not made");
-    if (!why.isEmpty()) say("The sample was not made", why);
+  connect(&task_, &BackgroundTask::failed, this, [this](const QString& why) {
+    stopping_ = false;
+    run_bar_->showFinished(why.isEmpty() ? "Cancelled" : task_words_ + " was not made");
+    if (!why.isEmpty()) say(task_words_ + " was not made", why);
+    refreshCommands();
   });
+  connect(start_, &StartPage::recentChosen, this,
+          [this](const QString& folder) { open(folder.toStdString()); });
 }
 
 void MainWindow::connectPlayer() {
   connect(&player_, &Player::playingChanged, this, &MainWindow::showPlaying);
   connect(splat_, &SplatView::pictureShown, &player_, &Player::poll);
-}
-
-void MainWindow::run(const std::string& until, RunScope scope, int every) {
-  if (!model_.isOpen() || job_.busy() || sample_.busy()) return;
-  if (const auto why = settings_->takeOver()) return say("The run did not start", *why);
-  if (!model_.save()) return;
-  message_->hide();
-  RunRequest request;
-  request.until = until;
-  if (scope == RunScope::Scout) request.every = std::max(every, 1);
-  const FrameRange all{0, static_cast<int>(model_.capture()->frames.size()) - 1};
-  const FrameRange range = scope == RunScope::Take ? all
-                           : scope != RunScope::Frame
-                               ? player_.range()
-                               : FrameRange{model_.frame().value, model_.frame().value};
-  run_ = {};
-  run_.until = until;
-  run_.active = true;
-  for (int f = range.first; f <= range.last; ++f) {
-    if ((f - range.first) % request.every == 0) run_.frames.push_back(f);
-    // A whole take goes on with the takes that are there; named frames would become one of their own.
-    if (scope != RunScope::Take) request.frames.push_back(FrameIndex{f});
-  }
-  timeline_->setRun(run_);
-  job_.start(model_.project(), request, services_.job_device);
-  settings_->setRunning(true);
-  run_bar_->showStarted(range.size() == 1 ? "Starting frame " +
-                                                QString::fromStdString(model_.capture()->frames[range.first])
-                                          : QString("Starting %1 frames").arg(run_.frames.size()));
-}
-
-void MainWindow::scout() {
-  if (!model_.isOpen() || job_.busy() || sample_.busy()) return;
-  const ScoutPlan plan{player_.range().size(), model_.survey() ? secondsAFrame(*model_.survey()) : 0,
-                       QString::fromStdString(model_.project().document().preset)};
-  if (plan.frames < 3) return say("Nothing to scout", "A scout run needs an in–out range of three frames.");
-  const std::optional<int> every = askScout(this, plan, scout_every_);
-  if (!every) return;
-  scout_every_ = *every;
-  run({}, RunScope::Scout, scout_every_);
-}
-
-void MainWindow::showRunning(const std::string& stage, std::optional<FrameIndex> frame) {
-  rail_->setRunning(stage, 0);
-  const int f = frame ? frame->value : -1;
-  if (run_.running_stage == stage && run_.running_frame == f) return;
-  run_.running_stage = stage;
-  run_.running_frame = f;
-  timeline_->setRun(run_);
 }
 
 void MainWindow::showPlaying() {
@@ -179,7 +218,6 @@ void MainWindow::showPlaying() {
     showStages();
     return showValues();
   }
-  previewing_ = false;
   const double interval_ms = 1000 / player_.clock().takeRate();
   const int divisor = full_size_play_ ? 1
                                       : playDivisor(splat_->fullPictureMilliseconds(),
@@ -188,40 +226,6 @@ void MainWindow::showPlaying() {
   timeline_->setPictureNote(shownView() != StudioView::Splat || divisor == 1 ? QString()
                             : divisor == 2                                   ? "half size"
                                                                              : "quarter size");
-}
-
-void MainWindow::cancelRun() {
-  run_bar_->showStopping();
-  job_.requestStop();
-  sample_.requestStop();
-}
-
-void MainWindow::showOpened() {
-  message_->hide();
-  reading_->clear();
-  previewing_ = false;
-  remember(QString::fromStdString(model_.project().folder().string()));
-  centre_->setCurrentIndex(1);
-  const bool can_run = !model_.project().readOnly() || !Project::isProject(model_.project().folder());
-  run_bar_->setRefusal(can_run ? QString() : QString("The project is read-only: look, do not run"));
-  run_bar_->showFinished({});
-  splat_->setScene({}, {});
-  splat_->setCapture(model_.capture(), model_.frame());
-  scene_->setCapture(model_.capture());
-  scene_->setCloud(nullptr);
-  scene_->setMesh(nullptr);
-  images_->refresh();
-  log_->add(LogLevel::Info, "Opened " + QString::fromStdString(model_.project().folder().string()));
-  for (const std::string& warning : model_.project().imported().warnings)
-    log_->add(LogLevel::Warning, QString::fromStdString(warning));
-  try {
-    lights_.reset(model_.project().environmentFile().value_or(std::filesystem::path()));
-  } catch (const Error& e) {
-    lights_.reset({});
-    say("The panorama is gone", QString::fromStdString(e.what()));
-  }
-  showTitle();
-  showStatus();
 }
 
 void MainWindow::showValues() {
@@ -237,66 +241,47 @@ void MainWindow::showValuesIn(StudioView view) {
   if (!model_.isOpen()) return;
   const FrameValues& values = model_.values();
   switch (view) {
-    case StudioView::Splat: {
-      // A finished step between two previews would throw the view back to an older picture.
-      if (previewing_ && job_.busy() && run_.running_frame == model_.frame().value && !values.materials)
-        return;
-      if (const auto& held = model_.held()) {
-        const QString from = QString::fromStdString(model_.capture()->frames[held->from.value]);
-        return splat_->setScene(
-            {held->values.cloud, held->values.materials},
-            QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));
-      }
-      return splat_->setScene({values.cloud, values.materials},
-                              "frame " + model_.frameName() + (values.interpolated ? ", interpolated" : ""));
-    }
+    case StudioView::Splat:
+      return showSplats();
     case StudioView::Image:
       return images_->refresh();
     case StudioView::Scene:
-      scene_->setCloud(values.cloud);
+      scene_->setCloud(previewWins() ? preview_.cloud : values.cloud);
       scene_->setMesh(values.mesh);
       if (shownView() == StudioView::Scene) joints_.refresh();
   }
 }
 
+void MainWindow::showBadge(const QString& badge) {
+  splat_->setBadge(badge);
+  images_->view().setBadge(badge);
+}
+
+void MainWindow::showSplats() {
+  if (!model_.isOpen()) return;
+  const FrameValues& values = model_.values();
+  if (previewWins()) {
+    showBadge(preview_.live ? "live preview" : "preview of the run that was stopped");
+    return splat_->setScene(
+        {preview_.cloud, nullptr},
+        QString("frame %1 · %2").arg(model_.frameName(), countText(preview_.cloud->size(), "Gaussian")));
+  }
+  if (const auto& held = model_.held()) {
+    const QString from = QString::fromStdString(model_.capture()->frames[held->from.value]);
+    showBadge(held->values.stale ? kStaleWords : QString());
+    return splat_->setScene({held->values.cloud, held->values.materials},
+                            QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));
+  }
+  showBadge(values.stale ? kStaleWords : QString());
+  splat_->setScene({values.cloud, values.materials},
+                   "frame " + model_.valuesFrameName() + (values.interpolated ? ", interpolated" : ""));
+}
+
 void MainWindow::showStages() {
-  if (player_.playing()) return;  // the rail tells of one frame: of the one that is looked at at rest
+  if (player_.playing()) return;  // at rest it is told of the frame that is looked at, too
   rail_->setStages(model_.stages());
   images_->refresh();
   if (shownView() == StudioView::Scene) joints_.refresh();
-}
-
-void MainWindow::showFinished(const JobFinished& outcome) {
-  previewing_ = false;
-  run_ = {};
-  timeline_->setRun(run_);
-  settings_->setRunning(false);
-  rail_->setRunning({}, 0);
-  const QString took = durationText(outcome.seconds);
-  const QString steps =
-      QString("%1 steps computed, %2 were there already").arg(outcome.computed).arg(outcome.reused);
-  switch (outcome.outcome) {
-    case JobOutcome::Done:
-      run_bar_->showFinished(QString("Done in %1: %2").arg(took, steps));
-      break;
-    case JobOutcome::DoneWithFailures:
-      run_bar_->showFinished(
-          QString("Done in %1, %2 frames failed: %3").arg(took).arg(outcome.failed.size()).arg(steps));
-      break;
-    case JobOutcome::Cancelled:
-      run_bar_->showFinished("Cancelled after " + took + "; finished steps are kept, Run goes on from there");
-      break;
-    case JobOutcome::Failed:
-      run_bar_->showFinished("The run stopped after " + took);
-      say("The run stopped", QString::fromStdString(outcome.message));
-      break;
-  }
-  log_->add(LogLevel::Info, run_bar_->text());
-  QStringList notes;
-  for (const std::string& note : outcome.notes) notes << QString::fromStdString(note);
-  if (!notes.isEmpty()) message_->show(MessagePanel::Kind::Notice, "Left out", notes.join("\n"));
-  model_.refresh(true);
-  project_panel_->refreshScores();
 }
 
 void MainWindow::showTitle() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/message_panel.h"
 
+#include <QAction>
 #include <QEvent>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -20,7 +21,11 @@ constexpr double kMostShare = 0.3;  // of the window's height
 }  // namespace
 
 MessagePanel::MessagePanel(QWidget* parent)
-    : QFrame(parent), title_(new QLabel), text_(new QLabel), scroll_(new QScrollArea) {
+    : QFrame(parent),
+      title_(new QLabel),
+      text_(new QLabel),
+      scroll_(new QScrollArea),
+      remedy_(new QToolButton) {
   setObjectName("message");
   title_->setStyleSheet("font-weight: 600");
   title_->setWordWrap(true);
@@ -46,12 +51,13 @@ MessagePanel::MessagePanel(QWidget* parent)
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(10, 6, 6, 6);
   row->addLayout(column, 1);
+  row->addWidget(remedy_, 0, Qt::AlignTop);
   row->addWidget(close, 0, Qt::AlignTop);
   setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
   hide();
 }
 
-void MessagePanel::show(Kind kind, const QString& title, const QString& text) {
+void MessagePanel::show(Kind kind, const QString& title, const QString& text, QAction* remedy) {
   setProperty("kind", QString(kind == Kind::Notice ? "notice" : "error"));
   for (QWidget* part :
        {static_cast<QWidget*>(this), static_cast<QWidget*>(title_), static_cast<QWidget*>(text_)}) {
@@ -61,6 +67,9 @@ void MessagePanel::show(Kind kind, const QString& title, const QString& text) {
   title_->setText(title);
   text_->setText(text);
   scroll_->setVisible(!text.isEmpty());
+  if (QAction* before = remedy_->defaultAction()) remedy_->removeAction(before);
+  if (remedy) remedy_->setDefaultAction(remedy);
+  remedy_->setVisible(remedy != nullptr);
   setVisible(true);
   fitHeight();
 }

@@ -5,6 +5,7 @@
 
 #include <QFrame>
 
+class QAction;
 class QLabel;
 class QScrollArea;
 class QToolButton;
@@ -17,7 +18,8 @@ class MessagePanel final : public QFrame {
  public:
   enum class Kind { Error, Notice };
   explicit MessagePanel(QWidget* parent = nullptr);
-  void show(Kind kind, const QString& title, const QString& text);
+  // `remedy`: a command that helps, as a button beside the words; null: there is none.
+  void show(Kind kind, const QString& title, const QString& text, QAction* remedy = nullptr);
   QString title() const;
   QString text() const;
 
@@ -32,6 +34,7 @@ class MessagePanel final : public QFrame {
   QLabel* title_;
   QLabel* text_;
   QScrollArea* scroll_;
+  QToolButton* remedy_;
 };
 
 }  // namespace beam

@@ -106,10 +106,10 @@ ProblemsPanel::ProblemsPanel(ProblemList& problems, QWidget* parent)
   rows_->setResizeMode(QListView::Adjust);
   rows_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
   rows_->setAccessibleName("Problems, newest first");
-  auto* copy_action = new QAction("Copy", rows_);
-  copy_action->setShortcut(QKeySequence::Copy);
-  copy_action->setShortcutContext(Qt::WidgetShortcut);
-  rows_->addAction(copy_action);
+  copy_row_ = new QAction("Copy", rows_);
+  copy_row_->setShortcut(QKeySequence::Copy);
+  copy_row_->setShortcutContext(Qt::WidgetShortcut);
+  rows_->addAction(copy_row_);
   rows_->setContextMenuPolicy(Qt::ActionsContextMenu);
   empty_->setObjectName("quiet");
   empty_->setWordWrap(true);
@@ -128,7 +128,7 @@ ProblemsPanel::ProblemsPanel(ProblemList& problems, QWidget* parent)
   column->addLayout(row);
   column->addWidget(rows_, 1);
   column->addWidget(empty_, 1);
-  connect(copy_action, &QAction::triggered, this, [this] { copy(false); });
+  connect(copy_row_, &QAction::triggered, this, [this] { copy(false); });
   connect(copy_all_, &QToolButton::clicked, this, [this] { copy(true); });
   connect(clear_, &QToolButton::clicked, &problems_, &ProblemList::clear);
   connect(&problems_, &ProblemList::changed, this, &ProblemsPanel::refresh);
@@ -151,6 +151,8 @@ void ProblemsPanel::refresh() {
   rows_->setVisible(any);
   empty_->setVisible(!any);
   for (QToolButton* button : {copy_all_, clear_}) button->setEnabled(any);
+  copy_row_->setEnabled(any);
+  copy_row_->setToolTip(any ? "Copy the chosen problems as text" : "There are no problems to copy");
   copy_all_->setToolTip(any ? "Copy every problem as text" : "There are no problems to copy");
   clear_->setToolTip(any ? "Empty the list; what is still wrong is told again" : "There are no problems");
   if (title() == told_) return;

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+class QAction;
 class QLabel;
 class QToolButton;
 
@@ -73,6 +74,7 @@ class ProblemsPanel final : public QWidget {
   ProblemList& problems_;
   QListWidget* rows_;
   QLabel* empty_;
+  QAction* copy_row_;
   QToolButton *copy_all_, *clear_;
   QString told_;
 };

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/pipeline/project_history.h"
 #include "core/stages/interpolated_frame.h"
 
 namespace beam {
@@ -17,7 +18,13 @@ namespace {
 
 constexpr int kAutosave_ms = 800;
 
-Project projectOfCapture(const fs::path& capture, const std::shared_ptr<const PipelineSetup>& setup) {
+Project projectOfCapture(const fs::path& capture, const fs::path& place,
+                         const std::shared_ptr<const PipelineSetup>& setup) {
+  if (!place.empty()) {
+    Project made = Project::create(place, {}, setup);
+    made.setCapture(capture);
+    return made;
+  }
   const fs::path wanted = projectFolderFor(capture);
   for (int attempt = 1;; ++attempt) {
     const fs::path folder =
@@ -34,10 +41,12 @@ Project projectOfCapture(const fs::path& capture, const std::shared_ptr<const Pi
   }
 }
 
-FrameValues valuesOf(const Project& project, FrameIndex frame) {
+FrameValues valuesOf(const Project& project, FrameIndex frame, const Leftovers& leftovers) {
   FrameValues values;
-  if (std::optional<FrameResult> result = loadShownFrame(project, frame)) {
+  if (std::optional<FrameResult> result = loadShownFrame(project, frame, leftovers)) {
     values.interpolated = result->interpolated;
+    values.stale = result->stale;
+    values.stale_note = result->stale_note;
     values.cloud = std::make_shared<const GaussianCloud>(std::move(result->cloud));
     if (result->materials)
       values.materials = std::make_shared<const Materials>(std::move(*result->materials));
@@ -52,6 +61,7 @@ struct ProjectModel::Opened {
   std::optional<Project> project;
   std::shared_ptr<const CaptureSet> capture;
   QString error;
+  bool broken = false;  // its project.json cannot be read, an earlier one can
 };
 
 struct ProjectModel::Surveyed {
@@ -91,10 +101,10 @@ ProjectModel::~ProjectModel() {
   if (autosave_.isActive()) saveQuietly();
 }
 
-void ProjectModel::open(const fs::path& path) {
+void ProjectModel::open(const fs::path& path, const fs::path& place) {
   opening_ = true;
   Q_EMIT openingStarted(QString::fromStdString(path.string()));
-  open_worker_.submit([this, path, setup = services_.pipeline] {
+  open_worker_.submit([this, path, place, setup = services_.pipeline] {
     auto result = std::make_shared<Opened>();
     result->path = path;
     try {
@@ -103,10 +113,13 @@ void ProjectModel::open(const fs::path& path) {
             Error::Kind::Data,
             fmt::format("\"{}\" does not exist; choose a capture folder or a project", path.string()));
       }
-      result->project = Project::isProject(path) ? Project::open(path, setup) : projectOfCapture(path, setup);
+      result->project =
+          looksLikeProject(path) ? Project::open(path, setup) : projectOfCapture(path, place, setup);
+      if (!result->project->captureIsThere()) result->project->lookWithoutCapture();
       result->capture = std::make_shared<const CaptureSet>(result->project->capture());
     } catch (const std::exception& e) {  // the border of this thread: said in the window
       result->error = QString::fromStdString(e.what());
+      result->broken = !result->project && !projectHistory(path).empty();
     }
     QMetaObject::invokeMethod(
         this, [this, result] { adopt(result); }, Qt::QueuedConnection);
@@ -115,15 +128,41 @@ void ProjectModel::open(const fs::path& path) {
 
 void ProjectModel::adopt(const std::shared_ptr<Opened>& result) {
   opening_ = false;
+  if (result->broken) {
+    Q_EMIT broken(QString::fromStdString(result->path.string()), result->error);
+    return;
+  }
   if (!result->error.isEmpty()) {
     Q_EMIT failed("Cannot open " + QString::fromStdString(result->path.filename().string()), result->error);
     return;
   }
   if (autosave_.isActive()) saveQuietly();
-  autosave_.stop();
   project_.reset();
+  forgetValues();
   project_.emplace(std::move(*result->project));
   capture_ = result->capture;
+  ready_ = false;
+  cache_.setSource([project = *project_](FrameIndex frame) { return valuesOf(project, frame, {}); }, {});
+  unsaved_ = !Project::isProject(project_->folder());
+  Q_EMIT opened();
+  refresh();
+  showFrame();
+}
+
+void ProjectModel::close() {
+  if (!project_) return;
+  if (autosave_.isActive()) saveQuietly();
+  project_.reset();
+  forgetValues();
+  unsaved_ = false;
+  states_seen_ = ++states_ticket_;  // what is still on its way is of the closed one
+  Q_EMIT closed();
+}
+
+void ProjectModel::forgetValues() {
+  autosave_.stop();
+  run_project_.reset();
+  capture_ = nullptr;
   frame_ = FrameIndex{0};
   stages_.clear();
   survey_ = nullptr;
@@ -133,13 +172,64 @@ void ProjectModel::adopt(const std::shared_ptr<Opened>& result) {
   values_of_.reset();
   prefetch_.clear();
   told_error_.clear();
-  ready_ = false;
+  pictures_due_ = false;
+  start_open_ = false;
+  capture_there_ = true;
+  mesh_seen_ = ++mesh_ticket_;
   cache_.clear();
-  cache_.setSource([project = *project_](FrameIndex frame) { return valuesOf(project, frame); }, {});
-  unsaved_ = !Project::isProject(project_->folder());
-  Q_EMIT opened();
-  refresh();
-  showFrame();
+}
+
+void ProjectModel::startAt(const QString& frame_name) {
+  start_open_ = true;
+  for (std::size_t i = 0; capture_ && i < capture_->frames.size(); ++i) {
+    if (QString::fromStdString(capture_->frames[i]) == frame_name)
+      return setFrame(FrameIndex{static_cast<std::int32_t>(i)});
+  }
+}
+
+void ProjectModel::locateCapture(const fs::path& folder) {
+  opening_ = true;
+  Q_EMIT openingStarted(QString::fromStdString(folder.string()));
+  open_worker_.submit([this, folder, project = *project_]() mutable {
+    auto result = std::make_shared<Opened>();
+    result->path = folder;
+    try {
+      project.relocateCapture(folder);
+      result->capture = std::make_shared<const CaptureSet>(project.capture());
+      if (!project.readOnly()) project.save();
+      result->project = std::move(project);
+    } catch (const std::exception& e) {  // the border of this thread: said in the window
+      result->error = QString::fromStdString(e.what());
+    }
+    QMetaObject::invokeMethod(
+        this, [this, result] { adopt(result); }, Qt::QueuedConnection);
+  });
+}
+
+void ProjectModel::setCaptureThere(bool there) {
+  if (capture_there_ == there) return;
+  capture_there_ = there;
+  if (there) return refresh(true);
+  showStages();
+}
+
+QString ProjectModel::lostCaptureText() const {
+  return QString(
+             "Expected it at \"%1\". Put it back, or say where it is now; what is solved can be looked at "
+             "meanwhile.")
+      .arg(QString::fromStdString(project_->document().capture.absolute));
+}
+
+void ProjectModel::startRun() { run_project_ = *project_; }
+
+void ProjectModel::endRun() {
+  run_project_.reset();
+  refresh(true);
+}
+
+QString ProjectModel::valuesFrameName() const {
+  if (!capture_ || !values_of_) return frameName();
+  return QString::fromStdString(capture_->frames[values_of_->value]);
 }
 
 QString ProjectModel::frameName() const {
@@ -148,6 +238,7 @@ QString ProjectModel::frameName() const {
 }
 
 void ProjectModel::setFrame(FrameIndex frame) {
+  start_open_ = false;
   if (frame == frame_) return;
   frame_ = frame;
   ready_ = false;
@@ -210,11 +301,11 @@ void ProjectModel::saveQuietly() {
 }
 
 void ProjectModel::refresh(bool pictures) {
-  if (!project_) return;
+  if (!project_ || !capture_there_) return;
   pictures_due_ = pictures_due_ || pictures;
   const std::uint64_t ticket = ++states_ticket_;
   states_worker_.submit(
-      [this, project = *project_, surveyor = surveyor_, ticket, look = pictures_due_]() mutable {
+      [this, project = shownProject(), surveyor = surveyor_, ticket, look = pictures_due_]() mutable {
         auto result = std::make_shared<Surveyed>();
         result->ticket = ticket;
         result->pictures = look;
@@ -242,16 +333,35 @@ void ProjectModel::take(const std::shared_ptr<Surveyed>& result) {
   }
   survey_ = result->survey;
   project_->adoptTakes(*result->project);
-  cache_.setSource([project = result->project](FrameIndex frame) { return valuesOf(*project, frame); },
-                   survey_->stamps);
+  if (run_project_) run_project_->adoptTakes(*result->project);
+  cache_.setSource(
+      [project = result->project, survey = survey_](FrameIndex frame) {
+        return valuesOf(*project, frame, survey->leftovers[frame.value]);
+      },
+      survey_->stamps);
   showStages();
+  if (start_open_) startAtFirstSolved();
   showFrame();
   Q_EMIT memoryChanged();
+}
+
+void ProjectModel::startAtFirstSolved() {
+  start_open_ = false;
+  const auto solved = std::find_if(survey_->stamps.begin(), survey_->stamps.end(),
+                                   [](const Digest& stamp) { return stamp != Digest{}; });
+  if (solved != survey_->stamps.end())
+    setFrame(FrameIndex{static_cast<std::int32_t>(solved - survey_->stamps.begin())});
 }
 
 void ProjectModel::showStages() {
   if (!survey_) return;
   stages_ = stageStatus(*survey_, services_.pipeline->stages.infos(), frame_);
+  if (!capture_there_) {
+    for (StageStatus& stage : stages_) {
+      stage.state = StepState::Blocked;
+      stage.detail = "The capture is not where it was.";
+    }
+  }
   Q_EMIT stagesChanged();
 }
 
@@ -318,11 +428,13 @@ void ProjectModel::loadMesh() {
     return;
   }
   const std::uint64_t ticket = ++mesh_ticket_;
-  mesh_worker_.submit([this, project = *project_, frame = frame_, ticket] {
+  const Leftovers leftovers =
+      survey_ ? survey_->leftovers[static_cast<std::size_t>(frame_.value)] : Leftovers{};
+  mesh_worker_.submit([this, project = shownProject(), frame = frame_, leftovers, ticket] {
     std::shared_ptr<const Mesh> mesh;
     QString error;
     try {
-      if (std::optional<Mesh> found = loadFrameMesh(project, frame))
+      if (std::optional<Mesh> found = loadShownMesh(project, frame, leftovers))
         mesh = std::make_shared<const Mesh>(std::move(*found));
     } catch (const std::exception& e) {  // the border of this thread: said in the window
       error = QString::fromStdString(e.what());

@@ -28,13 +28,28 @@ class ProjectModel final : public QObject {
   explicit ProjectModel(StudioServices services, QObject* parent = nullptr);
   ~ProjectModel() override;
 
-  // A project folder, or a capture (a project for it is found or made beside it; on disk from the first save
-  // on). Answers with opened() or failed().
-  void open(const std::filesystem::path& path);
+  // A project folder, or a capture (a project for it is found or made at `place`, empty: beside it; on disk
+  // from the first save on). Answers with opened() or failed().
+  void open(const std::filesystem::path& path, const std::filesystem::path& place = {});
   bool opening() const { return opening_; }
+  void close();
+  // The capture lies in `folder` now; answers like open().
+  void locateCapture(const std::filesystem::path& folder);
+  // It went away, or came back, while the project is open. Without it results are looked at, nothing is run.
+  void setCaptureThere(bool there);
+  bool captureLost() const { return project_ && (!capture_there_ || project_->withoutCapture()); }
+  QString lostCaptureText() const;
+  // The frame to begin with, right after opened(): this one, else the first that is solved, which is known
+  // after the first survey.
+  void startAt(const QString& frame_name);
 
   bool isOpen() const { return project_.has_value(); }
   const Project& project() const { return *project_; }
+  // The project that states and values are told of: while a run goes on as it was when that started, so that
+  // what is being made is shown, whatever is edited meanwhile for the next.
+  const Project& shownProject() const { return run_project_ ? *run_project_ : *project_; }
+  void startRun();
+  void endRun();
   std::shared_ptr<const CaptureSet> capture() const { return capture_; }
   const StudioServices& services() const { return services_; }
 
@@ -58,6 +73,7 @@ class ProjectModel final : public QObject {
   std::shared_ptr<const TakeSurvey> survey() const { return survey_; }  // null: not there yet
   const FrameValues& values() const { return values_; }
   const std::optional<HeldValues>& held() const { return held_; }
+  QString valuesFrameName() const;  // the frame that values() are of; while another is read not frame()
   // values() (or held()) belong to frame() and to the newest survey.
   bool valuesReady() const { return ready_; }
   // Frames that will be looked at next, most urgent first.
@@ -73,7 +89,10 @@ class ProjectModel final : public QObject {
  Q_SIGNALS:
   void openingStarted(const QString& path);
   void opened();
+  void closed();
   void failed(const QString& what, const QString& why);
+  // Opening failed because of what project.json says, or lacks; there are earlier versions of it.
+  void broken(const QString& folder, const QString& why);
   void settingsChanged();
   void stagesChanged();
   void frameChanged();
@@ -84,6 +103,8 @@ class ProjectModel final : public QObject {
   struct Opened;
   struct Surveyed;
   void adopt(const std::shared_ptr<Opened>& result);
+  void forgetValues();
+  void startAtFirstSolved();
   void take(const std::shared_ptr<Surveyed>& result);
   void showStages();
   void showFrame();
@@ -93,7 +114,7 @@ class ProjectModel final : public QObject {
   void saveQuietly();
 
   StudioServices services_;
-  std::optional<Project> project_;
+  std::optional<Project> project_, run_project_;
   std::shared_ptr<const CaptureSet> capture_;
   FrameIndex frame_;
   std::vector<StageStatus> stages_;
@@ -105,6 +126,8 @@ class ProjectModel final : public QObject {
   std::vector<FrameIndex> prefetch_;
   QString told_error_;
   bool opening_ = false, unsaved_ = false, ready_ = false, passing_ = false;
+  bool capture_there_ = true;
+  bool start_open_ = false;    // the frame to begin with is not chosen yet
   bool pictures_due_ = false;  // a refresh of the pictures was asked for and has not answered
   // A refresh that a newer one overtakes never answers; the newest always does.
   std::uint64_t states_ticket_ = 0, states_seen_ = 0, mesh_ticket_ = 0, mesh_seen_ = 0;

@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "ui/command_table.h"
 #include "ui/elided_label.h"
 
 namespace beam {
@@ -22,29 +23,27 @@ QString percent(double fraction) {
   return QString("%1 %").arg(static_cast<int>(std::floor(100 * std::min(fraction, 1.0))));
 }
 
-QAction* entry(QMenu* menu, const QString& text, const QString& tip) {
-  QAction* action = menu->addAction(text);
-  action->setToolTip(tip);
-  return action;
+QToolButton* splitButton(const QString& words) {
+  auto* button = new QToolButton;
+  button->setText(words);
+  button->setPopupMode(QToolButton::MenuButtonPopup);
+  button->setMenu(new QMenu(button));
+  button->menu()->setToolTipsVisible(true);
+  button->setFocusPolicy(Qt::StrongFocus);
+  button->setEnabled(false);
+  return button;
 }
 
 }  // namespace
 
 RunBar::RunBar(QWidget* parent)
     : QWidget(parent),
-      run_(new QToolButton),
-      stop_(new QToolButton),
+      run_(splitButton("Run")),
+      stop_(splitButton("Cancel")),
       bar_(new QProgressBar),
       plan_(new ElidedLabel),
-      words_(new ElidedLabel),
-      refusal_("Open a capture or a project first") {
+      words_(new ElidedLabel) {
   run_->setObjectName("primary");
-  run_->setText("Run");
-  run_->setPopupMode(QToolButton::MenuButtonPopup);
-  run_->setMenu(new QMenu(run_));
-  run_->menu()->setToolTipsVisible(true);
-  run_->setFocusPolicy(Qt::StrongFocus);
-  makeStop();
   bar_->setRange(0, 1000);
   bar_->setTextVisible(true);
   bar_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
@@ -70,22 +69,17 @@ RunBar::RunBar(QWidget* parent)
   // What is Ignored asks for no room of its own.
   column->addSpacerItem(new QSpacerItem(kWishedLetters * fontMetrics().averageCharWidth(), 0,
                                         QSizePolicy::Preferred, QSizePolicy::Fixed));
-  connect(run_, &QToolButton::clicked, this, [this] { Q_EMIT runWanted({}); });
   setRunning(false);
 }
 
-void RunBar::makeStop() {
-  stop_->setText("Cancel");
-  stop_->setPopupMode(QToolButton::MenuButtonPopup);
-  stop_->setFocusPolicy(Qt::StrongFocus);
-  auto* menu = new QMenu(stop_);
-  menu->setToolTipsVisible(true);
-  after_step_ = entry(menu, "Stop after this step", "The step at work ends and its result is kept");
-  after_frame_ = entry(menu, "Stop after this frame", "All steps of the frame at work end and are kept");
-  stop_->setMenu(menu);
-  connect(stop_, &QToolButton::clicked, this, &RunBar::stopWanted);
-  connect(after_step_, &QAction::triggered, this, &RunBar::stopAfterStepWanted);
-  connect(after_frame_, &QAction::triggered, this, &RunBar::stopAfterFrameWanted);
+void RunBar::bind(const std::vector<QAction*>& runs, const std::vector<QAction*>& until, QAction* stop,
+                  const std::vector<QAction*>& later) {
+  bindButton(run_, runs.front());
+  for (QAction* action : runs) run_->menu()->addAction(action);
+  run_->menu()->addSeparator();
+  for (QAction* action : until) run_->menu()->addAction(action);
+  bindButton(stop_, stop);
+  for (QAction* action : later) stop_->menu()->addAction(action);
 }
 
 QSize RunBar::minimumSizeHint() const {
@@ -94,58 +88,24 @@ QSize RunBar::minimumSizeHint() const {
           QWidget::minimumSizeHint().height()};
 }
 
-void RunBar::setStages(const std::vector<StageInfo>& stages) {
-  stages_ = stages;
-  QMenu* menu = run_->menu();
-  menu->clear();
-  connect(entry(menu, "This frame", "Compute what is missing of the frame in view"), &QAction::triggered,
-          this, [this] { Q_EMIT runWanted({}); });
-  connect(entry(menu, "In–out range", "Every frame from the in point to the out point of the timeline"),
-          &QAction::triggered, this, &RunBar::rangeWanted);
-  connect(entry(menu, "Scout the in–out range…",
-                "A quick look at the motion: solve every so manieth frame and interpolate between them"),
-          &QAction::triggered, this, &RunBar::scoutWanted);
-  connect(entry(menu, "Whole take", "Every frame of the capture"), &QAction::triggered, this,
-          &RunBar::takeWanted);
-  menu->addSeparator();
-  for (const StageInfo& stage : stages) {
-    const QString title = QString::fromStdString(stage.title);
-    connect(entry(menu, "This frame until " + title, "Stop when " + title + " is done"), &QAction::triggered,
-            this, [this, id = stage.id] { Q_EMIT runWanted(QString::fromStdString(id)); });
-  }
-}
-
-void RunBar::setRefusal(const QString& why) {
-  refusal_ = why;
-  showButtons();
-}
+void RunBar::setStages(const std::vector<StageInfo>& stages) { stages_ = stages; }
 
 void RunBar::setPlan(const QString& plan) {
   plan_->setText(plan);
-  showButtons();
+  showParts();
 }
 
 void RunBar::setRunning(bool running) {
   running_ = running;
-  can_stop_ = running;
   stopping_.clear();
   if (running) {
     remaining_.start();
     clock_.start();
   }
-  showButtons();
+  showParts();
 }
 
-void RunBar::showButtons() {
-  run_->setEnabled(refusal_.isEmpty() && !running_);
-  QString tip =
-      "Compute what is missing of this frame (Ctrl+Enter); the arrow chooses frames or the last stage";
-  if (!plan_->text().isEmpty()) tip += "\n" + plan_->text();
-  run_->setToolTip(running_ ? QString("A run is going on") : refusal_.isEmpty() ? tip : refusal_);
-  stop_->setEnabled(can_stop_);
-  stop_->setToolTip(can_stop_  ? "Stop now (Ctrl+.); finished steps are kept. The arrow: stop a little later"
-                    : running_ ? "The run is stopping"
-                               : "Nothing is running");
+void RunBar::showParts() {
   bar_->setVisible(running_);
   plan_->setVisible(!running_ && !plan_->text().isEmpty());
   words_->setVisible(running_ || !words_->text().isEmpty() || plan_->text().isEmpty());
@@ -159,7 +119,6 @@ void RunBar::showStarted(const QString& what) {
   setRunning(true);
   bar_->setValue(0);
   bar_->setFormat(percent(0));
-  for (QAction* action : {after_step_, after_frame_}) action->setEnabled(true);
   say(what);
 }
 
@@ -182,7 +141,6 @@ void RunBar::showProgress(const StepProgress& p) {
 void RunBar::showReport(const ProgressReport& report) {
   bar_->setValue(static_cast<int>(1000 * report.fraction));
   bar_->setFormat(percent(report.fraction));
-  for (QAction* action : {after_step_, after_frame_}) action->setEnabled(false);
   const double elapsed_s = 1e-3 * static_cast<double>(clock_.elapsed());
   const bool says = report.fraction > kLeastShare && elapsed_s > kLeast_s;
   remaining_.feed(elapsed_s, says ? elapsed_s * (1 - report.fraction) / report.fraction : -1,
@@ -200,11 +158,9 @@ void RunBar::showWaiting(const QString& text) {
 
 void RunBar::showStopping(const QString& how) {
   if (!running_) return;
-  can_stop_ = !how.isEmpty();
   stopping_ = how.isEmpty() ? QString("Stopping") : "Stopping " + how;
-  for (QAction* action : {after_step_, after_frame_}) action->setEnabled(can_stop_);
   say({});
-  showButtons();
+  showParts();
 }
 
 void RunBar::showFinished(const QString& outcome) {

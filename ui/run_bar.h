@@ -26,8 +26,10 @@ class RunBar final : public QWidget {
   explicit RunBar(QWidget* parent = nullptr);
 
   void setStages(const std::vector<StageInfo>& stages);
-  // Why nothing can be run, as a sentence; empty: it can.
-  void setRefusal(const QString& why);
+  // Commands of the window. The first of `runs` is what Run does, the others and `until` are behind its
+  // arrow; `stop` is what Cancel does, `later` is behind its.
+  void bind(const std::vector<QAction*>& runs, const std::vector<QAction*>& until, QAction* stop,
+            const std::vector<QAction*>& later);
   // What Run would do and about how long it takes; empty: not known.
   void setPlan(const QString& plan);
   void showStarted(const QString& what);
@@ -45,30 +47,19 @@ class RunBar final : public QWidget {
   const RemainingTime& remaining() const { return remaining_; }
   QSize minimumSizeHint() const override;
 
- Q_SIGNALS:
-  void runWanted(const QString& until);  // of the shown frame; empty: everything
-  void rangeWanted();                    // everything from the in to the out point
-  void scoutWanted();                    // every Kth frame from the in to the out point
-  void takeWanted();                     // everything of the whole take
-  void stopWanted();                     // now
-  void stopAfterStepWanted();
-  void stopAfterFrameWanted();
-
  private:
-  void makeStop();
   void setRunning(bool running);
-  void showButtons();
+  void showParts();
   void say(const QString& words);
 
   QToolButton *run_, *stop_;
-  QAction *after_step_ = nullptr, *after_frame_ = nullptr;
   QProgressBar* bar_;
   ElidedLabel *plan_, *words_;
   std::vector<StageInfo> stages_;
   RemainingTime remaining_;
   QElapsedTimer clock_;
-  QString refusal_, stopping_;
-  bool running_ = false, can_stop_ = false;
+  QString stopping_;
+  bool running_ = false;
 };
 
 }  // namespace beam

@@ -158,7 +158,8 @@ QString StageRail::stateText(const StageStatus& stage) const {
 
 QString StageRail::tip(int index) const {
   const StageStatus& stage = stages_[index];
-  QString text = stageTip(stage);
+  QString text = QString("%1  ").arg(index + 1) + stageTip(stage);  // as the cell begins
+  if (!isEnabled()) text += "\nOpen a capture or a project first.";
   if (stage.id == running_) text += "\nNow: " + stateText(stage);
   if (const int warnings = warningsOf(stage.id); warnings > 0)
     text += "\n" + countText(warnings, "problem") + " of this stage, listed under Problems";
@@ -312,6 +313,7 @@ void StageRail::paintCell(QPainter& p, int index) const {
 void StageRail::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
+  if (!isEnabled()) painter.setOpacity(0.5);
   for (int i = 0; i < count(); ++i) paintCell(painter, i);
 }
 

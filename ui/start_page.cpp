@@ -2,10 +2,14 @@
 #include "ui/start_page.h"
 
 #include <QFileInfo>
+#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QVBoxLayout>
+
+#include "ui/command_table.h"
 
 namespace beam {
 namespace {
@@ -21,32 +25,22 @@ QLabel* words(const QString& text, const char* role) {
 
 }  // namespace
 
-StartPage::StartPage(bool has_sample, const QString& machine, QWidget* parent) : QWidget(parent) {
+StartPage::StartPage(const QString& machine, QWidget* parent) : QWidget(parent) {
   auto* card = new QFrame;
   card->setObjectName("card");
-  card->setFixedWidth(kCardWidth);
+  card->setMaximumWidth(kCardWidth);
   auto* column = new QVBoxLayout(card);
   column->setContentsMargins(32, 28, 32, 28);
   column->setSpacing(10);
   column->addWidget(words("BEAM Studio", "title"));
-  column->addWidget(words("Photographs of a person in a dome in, relightable Gaussians out.", "quiet"));
+  column->addWidget(
+      words("Photographs of a person, taken from all sides in a lit dome, become Gaussians that can be "
+            "lit anew.",
+            "quiet"));
   column->addSpacing(12);
-  column->addWidget(words(has_sample ? "Drop a capture folder here, or open the sample"
-                                     : "Drop a capture folder or a project here",
-                          "heading"));
-  auto* row = new QHBoxLayout;
-  const auto button = [&](const QString& text, auto signal, bool primary) {
-    auto* b = new QPushButton(text);
-    if (primary) b->setObjectName("primary");
-    b->setMinimumHeight(32);
-    connect(b, &QPushButton::clicked, this, signal);
-    row->addWidget(b);
-  };
-  button("Open capture…", &StartPage::openCaptureWanted, true);
-  button("Open project…", &StartPage::openProjectWanted, false);
-  if (has_sample) button("Open sample", &StartPage::sampleWanted, false);
-  row->addStretch();
-  column->addLayout(row);
+  column->addWidget(words("Drop a capture folder or a project here, or open one", "heading"));
+  buttons_ = new QHBoxLayout;
+  column->addLayout(buttons_);
   column->addSpacing(14);
   recent_ = new QVBoxLayout;
   recent_->setSpacing(4);
@@ -54,32 +48,67 @@ StartPage::StartPage(bool has_sample, const QString& machine, QWidget* parent) :
   column->addSpacing(8);
   column->addWidget(words("This machine", "heading"));
   column->addWidget(words(machine, "quiet"));
-  auto* middle = new QHBoxLayout;
-  middle->addStretch();
-  middle->addWidget(card);
-  middle->addStretch();
+  auto* inside = new QWidget;
+  auto* middle = new QGridLayout(inside);
+  middle->setColumnStretch(0, 1);
+  middle->setColumnStretch(1, 4);
+  middle->setColumnStretch(2, 1);
+  middle->setRowStretch(0, 1);
+  middle->setRowStretch(2, 1);
+  middle->addWidget(card, 1, 1);
+  auto* scroll = new QScrollArea;
+  scroll->setWidgetResizable(true);
+  scroll->setWidget(inside);
   auto* all = new QVBoxLayout(this);
-  all->addStretch();
-  all->addLayout(middle);
-  all->addStretch();
+  all->setContentsMargins(0, 0, 0, 0);
+  all->addWidget(scroll);
+}
+
+void StartPage::bind(CommandTable& commands) {
+  const auto button = [&](const QString& text, const char* command, bool primary) {
+    auto* b = new QPushButton(text);
+    if (primary) b->setObjectName("primary");
+    bindButton(b, commands.action(command));
+    buttons_->addWidget(b);
+  };
+  button("Open capture…", "open_capture", true);
+  button("Open project…", "open_project", false);
+  button("Open sample", "open_sample", false);
+  buttons_->addStretch();
+}
+
+void StartPage::setRefusal(const QString& why) {
+  if (why == refusal_) return;
+  refusal_ = why;
+  setRecent(folders_);
 }
 
 void StartPage::setRecent(const QStringList& folders) {
+  folders_ = folders;
   while (QLayoutItem* item = recent_->takeAt(0)) {
-    delete item->widget();
+    // A click on one of them may be what brought us here.
+    if (item->widget()) {
+      item->widget()->hide();
+      item->widget()->deleteLater();
+    }
     delete item;
   }
   recent_->addWidget(words("Recent", "heading"));
   if (folders.isEmpty()) recent_->addWidget(words("Nothing yet.", "quiet"));
-  for (const QString& folder : folders) {
-    auto* link = new QPushButton(QFileInfo(folder).fileName() + "    " + folder);
-    link->setFlat(true);
-    link->setStyleSheet("text-align: left");
-    link->setEnabled(QFileInfo::exists(folder));
-    link->setToolTip(link->isEnabled() ? folder : folder + " is not there any more");
-    connect(link, &QPushButton::clicked, this, [this, folder] { Q_EMIT recentChosen(folder); });
-    recent_->addWidget(link);
-  }
+  for (const QString& folder : folders) recent_->addWidget(recentButton(folder));
+}
+
+QPushButton* StartPage::recentButton(const QString& folder) {
+  auto* link = new QPushButton;
+  link->setFlat(true);
+  link->setObjectName("recent");
+  const QString text = QFileInfo(folder).fileName() + "    " + folder;
+  link->setText(link->fontMetrics().elidedText(text, Qt::ElideMiddle, kCardWidth - 110));
+  const bool there = QFileInfo::exists(folder);
+  link->setEnabled(there && refusal_.isEmpty());
+  link->setToolTip(!there ? folder + " is not there any more." : refusal_.isEmpty() ? folder : refusal_);
+  connect(link, &QPushButton::clicked, this, [this, folder] { Q_EMIT recentChosen(folder); });
+  return link;
 }
 
 }  // namespace beam

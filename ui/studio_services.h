@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/pipeline/project.h"
@@ -14,12 +15,17 @@
 
 namespace beam {
 
+// What is wrong with the pictures of a capture, a sentence each; may be cancelled.
+using CaptureCheck =
+    std::function<std::vector<std::string>(const std::filesystem::path&, const ImportOptions&, Progress&)>;
+
 struct StudioServices {
   std::shared_ptr<const PipelineSetup> pipeline;
   // Two devices: a job and a view do not wait for each other.
   std::shared_ptr<ComputeDevice> job_device, view_device;
   // Writes the sample capture into a folder that does not exist; empty: none comes with the program.
   std::function<void(const std::filesystem::path&, Progress&)> make_sample;
+  CaptureCheck check_capture = {};  // empty: pictures are not looked at when a project is opened
   std::string version;
   std::uint64_t frame_memory_bytes = 0;  // most that decoded frames may take; 0: as the machine can spare
 };

@@ -19,6 +19,20 @@ double numberOf(const QCommandLineParser& parser, const QString& name) {
   return value;
 }
 
+void readLook(const QCommandLineParser& parser, StudioArguments& a) {
+  a.look_given = parser.isSet("theme") || parser.isSet("text-size");
+  if (parser.isSet("theme")) {
+    const QStringList names{"system", "dark", "light"};  // in the order of Theme
+    const int theme = static_cast<int>(names.indexOf(parser.value("theme")));
+    if (theme < 0) refuse("--theme expects system, dark or light, found \"" + parser.value("theme") + "\"");
+    a.theme = static_cast<Theme>(theme);
+  }
+  if (!parser.isSet("text-size")) return;
+  a.text_percent = static_cast<int>(numberOf(parser, "text-size"));
+  if (a.text_percent < 100 || a.text_percent > 150)
+    refuse("--text-size expects a percentage from 100 to 150, found " + parser.value("text-size"));
+}
+
 }  // namespace
 
 StudioArguments parseArguments(QCoreApplication& application) {
@@ -65,6 +79,8 @@ StudioArguments parseArguments(QCoreApplication& application) {
       "Write the window as a PNG file and quit, with the layout as it ships; for reviews without a "
       "person (works under xvfb-run).",
       "FILE");
+  add("theme", "Colours: system, dark or light; otherwise as chosen last in the window.", "NAME");
+  add("text-size", "Text in percent of its usual size, 100 to 150; otherwise as chosen last.", "PERCENT");
   add("after", "Seconds to wait before the screenshot, once everything is shown.", "S", "0");
   add("simd", "auto, avx512, avx2 or scalar.", "NAME", "auto");
   add("threads", "Threads to use; 0: all.", "N", "0");
@@ -108,6 +124,7 @@ StudioArguments parseArguments(QCoreApplication& application) {
   a.full_size = parser.isSet("full-size");
   a.frame_memory_mb = numberOf(parser, "frame-memory");
   if (a.play_s < 0 || a.frame_memory_mb < 0) refuse("--play and --frame-memory expect no negative number");
+  readLook(parser, a);
   a.wait_run = parser.isSet("wait-run");
   a.device.simd = parser.value("simd").toStdString();
   a.device.threads = static_cast<int>(numberOf(parser, "threads"));

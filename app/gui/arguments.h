@@ -9,6 +9,7 @@
 
 #include "app/services.h"
 #include "ui/main_window.h"
+#include "ui/theme.h"
 
 namespace beam {
 
@@ -28,7 +29,10 @@ struct StudioArguments {
   double play_s = 0;  // 0: not
   bool full_size = false;
   double frame_memory_mb = 0;  // 0: as the machine can spare
-  double after_s = 0;          // the picture is taken that long after everything has settled
+  Theme theme = Theme::Dark;
+  int text_percent = 100;
+  bool look_given = false;  // else as the person chose last
+  double after_s = 0;       // the picture is taken that long after everything has settled
 };
 
 // Throws Error{Usage}. Answers --help and --version itself and ends the process.

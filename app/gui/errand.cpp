@@ -33,6 +33,7 @@ Errand::Errand(MainWindow& window, const StudioArguments& arguments)
     values_came_ = true;
     if (!arguments_.left.isEmpty()) window_.imagePage().choosePictures(arguments_.left, arguments_.right);
   });
+  if (!arguments_.screenshot.isEmpty()) window_.setAsksBeforeClosing(false);
   timer_.setInterval(kTick_ms);
   connect(&timer_, &QTimer::timeout, this, &Errand::tick);
   window_.showView(arguments_.view);
@@ -150,6 +151,7 @@ void Errand::takePicture() {
 }
 
 void Errand::giveUp(const QString& why) {
+  window_.setAsksBeforeClosing(false);
   std::fprintf(stderr, "error: %s\n", why.toUtf8().constData());
   window_.close();
   QApplication::exit(exitCode(Error::Kind::Usage));

@@ -8,11 +8,14 @@
 #include "app/gui/errand.h"
 #include "app/services.h"
 #include "core/base/error.h"
+#include "core/io/capture_check.h"
 #include "core/sample/make_sample.h"
 #include "ui/theme.h"
 #include "viewers/gl/functions.h"
 
 namespace {
+
+constexpr int kSampleFrames = 4;  // enough to play, and to see the tracking
 
 // Without a picture to take there is a person before the screen; say it in a window, too.
 int report(const beam::Error& error, bool person) {
@@ -36,14 +39,20 @@ int runStudio(QApplication& application) {
         .pipeline = services.pipeline,
         .job_device = beam::makeDevice(arguments.device),
         .view_device = beam::makeDevice(arguments.device),
-        .make_sample = [](const std::filesystem::path& folder,
-                          beam::Progress& progress) { beam::makeSample(folder, {}, progress); },
+        .make_sample =
+            [](const std::filesystem::path& folder, beam::Progress& progress) {
+              beam::makeSample(folder, {.frames = kSampleFrames}, progress);
+            },
+        .check_capture =
+            [](const std::filesystem::path& folder, const beam::ImportOptions& options,
+               beam::Progress& progress) { return beam::checkPath(folder, options, &progress).warnings; },
         .version = beam::versionText(),
         .frame_memory_bytes = static_cast<std::uint64_t>(1e6 * arguments.frame_memory_mb),
     };
-    beam::applyTheme(application);
+    beam::applyTheme(application, arguments.theme, arguments.text_percent / 100.0);
     beam::MainWindow window(std::move(studio),
                             person ? beam::MainWindow::Layout::Remembered : beam::MainWindow::Layout::Fresh);
+    if (person && !arguments.look_given) window.recallLook();
     window.show();
     const beam::Errand errand(window, arguments);
     return QApplication::exec();

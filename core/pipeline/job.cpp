@@ -29,7 +29,7 @@ bool spoilsOneFrameOnly(Error::Kind kind) { return kind == Error::Kind::Data || 
 }  // namespace
 
 Job::Job(Project& project, ComputeDevice& device, std::stop_token stop, const StopWishes& wishes, Tell tell,
-         Slot<GaussianCloud>& preview)
+         Slot<JobPreview>& preview)
     : project_(project),
       device_(device),
       stop_(std::move(stop)),
@@ -329,7 +329,9 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
       [this](std::string_view name) { return project_.value(name); },
       device_,
       progress,
-      [this](std::shared_ptr<const GaussianCloud> cloud) { preview_.publish(std::move(cloud)); },
+      [this, ref](std::shared_ptr<const GaussianCloud> cloud) {
+        preview_.publish(std::make_shared<const JobPreview>(JobPreview{ref, std::move(cloud)}));
+      },
   };
   const std::map<std::string, Digest>& upstream = record.ingredients.upstream;
   for (const auto& [name, key] : upstream) {

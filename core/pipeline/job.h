@@ -30,7 +30,7 @@ class Job {
   using Tell = std::function<void(JobEvent)>;
   // `project` gets the takes that the run is about.
   Job(Project& project, ComputeDevice& device, std::stop_token stop, const StopWishes& wishes, Tell tell,
-      Slot<GaussianCloud>& preview);
+      Slot<JobPreview>& preview);
   ~Job();
 
   // Never throws: what went wrong is in the answer.
@@ -85,7 +85,7 @@ class Job {
   std::stop_token stop_;
   const StopWishes& wishes_;
   Tell tell_;
-  Slot<GaussianCloud>& preview_;
+  Slot<JobPreview>& preview_;
   JobFinished finished_;
   Clock::time_point started_ = Clock::now(), step_started_ = started_;
   double weight_total_ = 0, weight_done_ = 0, weight_now_ = 0;

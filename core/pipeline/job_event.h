@@ -2,6 +2,7 @@
 // What a run tells the world. The console and the studio are two readers of the same stream.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/progress.h"
+#include "core/scene/gaussian_cloud.h"
 #include "core/scene/ids.h"
 
 namespace beam {
@@ -20,6 +22,12 @@ struct StepRef {
   std::optional<FrameIndex> frame;
   std::string frame_name;  // the capture's own; empty without frame
   bool lead = false;       // of a frame that is only there for the take after it to build on (Take::lead)
+};
+
+// Gaussians as the step at work has them, to look at; not an event: only the newest counts.
+struct JobPreview {
+  StepRef ref;
+  std::shared_ptr<const GaussianCloud> cloud;
 };
 
 struct StageStarted {

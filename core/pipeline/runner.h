@@ -43,11 +43,11 @@ class Runner {
   std::optional<JobEvent> tryPop() { return events_.tryPop(); }
   std::optional<JobEvent> waitPop(std::chrono::milliseconds patience) { return events_.waitPop(patience); }
   // The newest Gaussians of the step at work; empty before the first.
-  const Slot<GaussianCloud>& preview() const { return preview_; }
+  const Slot<JobPreview>& preview() const { return preview_; }
 
  private:
   EventQueue<JobEvent> events_;
-  Slot<GaussianCloud> preview_;
+  Slot<JobPreview> preview_;
   std::atomic<bool> running_{false};
   StopWishes wishes_;
   std::jthread thread_;

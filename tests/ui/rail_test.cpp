@@ -11,6 +11,7 @@
 #include <QToolButton>
 
 #include "tests/support/wait_for.h"
+#include "ui/command_table.h"
 #include "ui/elided_label.h"
 #include "ui/run_bar.h"
 #include "ui/stage_rail.h"
@@ -277,48 +278,64 @@ QToolButton* buttonOf(RunBar& run, const QString& text) {
   return nullptr;
 }
 
-TEST(RunBar, RefusesToRunWithTheReasonInTheTooltip) {
-  RunBar run;
-  QToolButton* button = buttonOf(run, "Run");
+// Commands as the window has them.
+struct BoundBar {
+  BoundBar() {
+    const auto add = [this](const QString& id) {
+      return commands.add(id, {.text = id,
+                               .tip = "What " + id + " does",
+                               .act = [this, id] { asked << id; },
+                               .refusal = [this, id] { return refusals[id]; }});
+    };
+    QAction* run = add("run");
+    QAction* take = add("take");
+    QAction* until = add("until");
+    QAction* stop = add("stop");
+    QAction* step = add("step");
+    QAction* frame = add("frame");
+    bar.bind({run, take}, {until}, stop, {step, frame});
+    commands.refresh();
+  }
+  std::map<QString, QString> refusals;
+  QStringList asked;
+  CommandTable commands;
+  RunBar bar;
+};
+
+TEST(RunBar, SaysOnItsButtonsWhatTheCommandsSay) {
+  BoundBar b;
+  QToolButton* button = buttonOf(b.bar, "Run");
+  EXPECT_TRUE(button->isEnabled());
+  b.refusals["run"] = "The capture is not there";
+  b.commands.refresh();
   EXPECT_FALSE(button->isEnabled());
-  EXPECT_FALSE(button->toolTip().isEmpty());
-  run.setRefusal("The capture is not there");
-  EXPECT_EQ(button->toolTip().toStdString(), "The capture is not there");
-  run.setRefusal({});
-  run.setPlan("3 frames, about 2 min");
+  EXPECT_TRUE(button->toolTip().contains("The capture is not there"));
+  b.refusals.clear();
+  b.commands.setNote("run", "3 frames, about 2 min");
+  b.commands.refresh();
   EXPECT_TRUE(button->isEnabled());
   EXPECT_TRUE(button->toolTip().contains("3 frames, about 2 min"));
-  EXPECT_EQ(run.text().toStdString(), "3 frames, about 2 min");
-  EXPECT_EQ(buttonOf(run, "Cancel")->toolTip().toStdString(), "Nothing is running");
-  run.showStarted("Starting");
-  EXPECT_FALSE(button->isEnabled());
-  EXPECT_EQ(button->toolTip().toStdString(), "A run is going on");
+  b.bar.setPlan("3 frames, about 2 min");
+  EXPECT_EQ(b.bar.text().toStdString(), "3 frames, about 2 min");
 }
 
-TEST(RunBar, StopsNowOrAfterTheStepOrAfterTheFrame) {
-  RunBar run;
-  run.setRefusal({});
-  QStringList asked;
-  QObject::connect(&run, &RunBar::stopWanted, &run, [&] { asked << "now"; });
-  QObject::connect(&run, &RunBar::stopAfterStepWanted, &run, [&] { asked << "step"; });
-  QObject::connect(&run, &RunBar::stopAfterFrameWanted, &run, [&] { asked << "frame"; });
-  run.showStarted("Starting");
-  QToolButton* cancel = buttonOf(run, "Cancel");
+TEST(RunBar, RunsAndStopsByTheCommandsBehindItsButtons) {
+  BoundBar b;
+  buttonOf(b.bar, "Run")->click();
+  QToolButton* cancel = buttonOf(b.bar, "Cancel");
   ASSERT_EQ(cancel->menu()->actions().size(), 2);
   for (QAction* action : cancel->menu()->actions()) action->trigger();
-  run.showStopping("after this step");
-  EXPECT_TRUE(run.text().contains("after this step"));
-  EXPECT_TRUE(cancel->isEnabled()) << "stopping at once is still possible";
+  b.bar.showStarted("Starting");
+  b.bar.showStopping("after this step");
+  EXPECT_TRUE(b.bar.text().contains("after this step"));
   StepProgress progress;
   progress.ref = {"surface.fit", FrameIndex{0}, "000000"};
-  run.showProgress(progress);
-  EXPECT_TRUE(run.text().contains("after this step")) << "progress does not hide that it stops";
+  b.bar.showProgress(progress);
+  EXPECT_TRUE(b.bar.text().contains("after this step")) << "progress does not hide that it stops";
   cancel->click();
-  run.showStopping();
-  EXPECT_FALSE(cancel->isEnabled());
-  EXPECT_EQ(asked, (QStringList{"step", "frame", "now"}));
-  run.showFinished("Cancelled");
-  EXPECT_EQ(run.text().toStdString(), "Cancelled");
+  EXPECT_EQ(b.asked, (QStringList{"run", "step", "frame", "stop"}));
+  b.bar.showFinished("Cancelled");
+  EXPECT_EQ(b.bar.text().toStdString(), "Cancelled");
 }
 
 TEST(RunBar, NamesStepsByTheirTitlesAndGroupsThousands) {

@@ -2,9 +2,12 @@
 // The window and its parts on a virtual display: opening, running, cancelling, saying what went wrong.
 #include <gtest/gtest.h>
 
+#include <QAbstractButton>
 #include <QApplication>
 #include <QLineEdit>
+#include <QMessageBox>
 #include <QTest>
+#include <QTimer>
 
 #include <thread>
 
@@ -90,6 +93,7 @@ class SleepStage final : public StageOf<SleepOptions> {
 class Studio : public ::testing::Test {
  protected:
   Studio() : window(services(), MainWindow::Layout::Fresh) {
+    window.setAsksBeforeClosing(false);
     fs::create_directory(folder / "capture");
     window.show();
   }
@@ -139,8 +143,7 @@ TEST_F(Studio, RunsAStageInTheBackgroundWithPreviewAndProgress) {
   EXPECT_EQ(window.model().stages()[0].state, StepState::Done);
   window.run();
   EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }));
-  EXPECT_TRUE(window.runBar().text().contains("1 were there already"))
-      << window.runBar().text().toStdString();
+  EXPECT_TRUE(window.runBar().text().contains("1 there already")) << window.runBar().text().toStdString();
 }
 
 TEST_F(Studio, CancelsARunAndStaysUsable) {
@@ -154,6 +157,50 @@ TEST_F(Studio, CancelsARunAndStaysUsable) {
   EXPECT_TRUE(window.runBar().text().startsWith("Cancelled")) << window.runBar().text().toStdString();
   EXPECT_TRUE(waitFor([&] { return window.settled(); }));
   EXPECT_EQ(window.model().stages()[0].state, StepState::Pending);
+}
+
+TEST_F(Studio, SaysThatItStopsAfterTheStepAndKeepsIt) {
+  ASSERT_TRUE(openCapture());
+  window.model().set("surface.steps", FieldValue(600));
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("600"); }));
+  window.commands().action("stop_after_step")->trigger();
+  EXPECT_TRUE(window.runBar().text().contains("after this step")) << window.runBar().text().toStdString();
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
+  EXPECT_EQ(window.model().stages()[0].state, StepState::Done);
+}
+
+TEST_F(Studio, TakesAChangeDuringARunForTheNextOne) {
+  ASSERT_TRUE(openCapture());
+  window.model().set("surface.steps", FieldValue(400));
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("400"); }));
+  window.model().set("surface.steps", FieldValue(401));
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
+  EXPECT_EQ(window.model().stages()[0].done, 0) << "of the settings in force, which are of the next run";
+  EXPECT_EQ(window.model().stages()[0].stale_frames, 1);
+}
+
+TEST_F(Studio, AsksBeforeItClosesDuringARun) {
+  window.setAsksBeforeClosing(true);
+  ASSERT_TRUE(openCapture());
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("of"); }));
+  const auto answer = [&](const QString& words) {
+    QTimer::singleShot(100, &window, [words] {
+      auto* question = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+      ASSERT_NE(question, nullptr);
+      for (QAbstractButton* button : question->buttons()) {
+        if (button->text() == words) button->click();
+      }
+    });
+    window.close();
+  };
+  answer("Keep running");
+  EXPECT_TRUE(window.job().busy());
+  EXPECT_TRUE(window.isVisible());
+  answer("Stop and close");
+  EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }, 5000));
 }
 
 TEST_F(Studio, KeepsAnEditedSettingInTheProject) {
