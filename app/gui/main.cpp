@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/gui/errand.h"
+#include "app/gui/widget_map.h"
 #include "app/services.h"
 #include "core/base/error.h"
 #include "core/io/capture_check.h"
@@ -55,6 +56,7 @@ int runStudio(QApplication& application) {
     if (person && !arguments.look_given) window.recallLook();
     window.show();
     const beam::Errand errand(window, arguments);
+    const auto map = beam::widgetMapWanted();
     return QApplication::exec();
   } catch (const beam::Error& e) {
     return report(e, person);

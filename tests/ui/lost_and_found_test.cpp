@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stays in view and what can be done when settings changed, the capture moved, or project.json broke.
+#include <gtest/gtest.h>
+
+#include <QAction>
+
+#include "core/io/file.h"
+#include "tests/support/stand_in_studio.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/wait_for.h"
+#include "ui/main_window.h"
+#include "ui/message_panel.h"
+#include "ui/run_bar.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::TempDir;
+using testing::waitFor;
+
+class LostAndFound : public ::testing::Test {
+ protected:
+  LostAndFound() : window(testing::standInServices(), MainWindow::Layout::Fresh) {
+    testing::holdStandInRuns(false);
+    testing::copySolvedStandIn(folder.path());
+    writeFileAtomically(folder / "capture" / "dataset.json", "{}");  // to be known by
+    window.setAsksBeforeClosing(false);
+    window.show();
+  }
+  bool open(const fs::path& path) {
+    window.open(path);
+    return waitFor([&] { return window.model().isOpen() && window.settled(); });
+  }
+  bool enabled(const char* command) { return window.commands().action(command)->isEnabled(); }
+  bool run() {
+    window.run();
+    return waitFor([&] { return !window.job().busy() && window.settled(); });
+  }
+
+  // Another value of the first number of Surface.
+  void changeSurface() {
+    for (const Field& field : window.model().project().fields()) {
+      if (!field.info.name.starts_with("surface.") || !std::holds_alternative<int>(field.value)) continue;
+      return window.model().set(field.info.name, FieldValue(std::get<int>(field.value) + 1));
+    }
+    FAIL() << "the stand-in has no such setting";
+  }
+
+  TempDir folder;
+  MainWindow window;
+};
+
+TEST_F(LostAndFound, AResultOfOtherSettingsStaysInViewUntilTheNewOneIsThere) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  ASSERT_TRUE(window.model().values().materials);
+  EXPECT_FALSE(window.model().values().stale);
+  changeSurface();
+  ASSERT_TRUE(waitFor([&] { return window.settled() && window.model().values().stale; }));
+  EXPECT_TRUE(window.model().values().materials) << "what was solved stays in view";
+  ASSERT_TRUE(run());
+  EXPECT_TRUE(window.model().values().materials);
+  EXPECT_FALSE(window.model().values().stale);
+}
+
+TEST_F(LostAndFound, ThePreviewOfACancelledRunStays) {
+  ASSERT_TRUE(open(folder / "capture"));
+  changeSurface();
+  testing::holdStandInRuns(true);
+  bool preview = false;
+  QObject::connect(&window.job(), &JobBridge::previewChanged, &window, [&] { preview = true; });
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return preview; }));
+  window.cancelRun();
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
+  EXPECT_TRUE(window.showsPreview());
+  testing::holdStandInRuns(false);
+  ASSERT_TRUE(run());
+  EXPECT_FALSE(window.showsPreview());
+}
+
+TEST_F(LostAndFound, SolvedResultsOpenWithoutTheCaptureWhichCanBeLocated) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  ASSERT_TRUE(window.model().save());
+  fs::rename(folder / "capture", folder / "elsewhere");
+  window.open(folder / "capture.beam");
+  ASSERT_TRUE(waitFor([&] { return window.model().captureLost() && window.settled(); }));
+  EXPECT_TRUE(window.model().values().cloud) << "what is solved can be looked at";
+  EXPECT_TRUE(window.message().isVisible());
+  EXPECT_FALSE(enabled("run_frame"));
+  ASSERT_TRUE(enabled("locate_capture"));
+  window.model().locateCapture(folder / "elsewhere");
+  ASSERT_TRUE(waitFor([&] { return !window.model().captureLost() && window.settled(); }))
+      << window.message().text().toStdString();
+  EXPECT_TRUE(enabled("run_frame"));
+  EXPECT_FALSE(enabled("locate_capture"));
+}
+
+TEST_F(LostAndFound, ACaptureThatGoesWhileItIsOpenIsSaidAndWelcomedBack) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  fs::rename(folder / "capture", folder / "elsewhere");
+  ASSERT_TRUE(waitFor([&] { return window.model().captureLost(); }));
+  EXPECT_EQ(window.model().stages().front().state, StepState::Blocked);
+  EXPECT_TRUE(window.model().values().cloud);
+  EXPECT_FALSE(enabled("run_frame"));
+  fs::rename(folder / "elsewhere", folder / "capture");
+  ASSERT_TRUE(waitFor([&] { return !window.model().captureLost() && window.settled(); }));
+  EXPECT_EQ(window.model().stages().front().state, StepState::Done);
+}
+
+TEST_F(LostAndFound, ABrokenProjectOffersItsEarlierVersionsInWords) {
+  writeFileAtomically(folder / "capture.beam" / "project.json", "{ half");
+  window.open(folder / "capture.beam");
+  ASSERT_TRUE(waitFor([&] { return window.message().isVisible(); }));
+  EXPECT_FALSE(window.message().text().contains("exception")) << window.message().text().toStdString();
+  EXPECT_TRUE(enabled("earlier_versions"))
+      << window.message().title().toStdString() << ": " << window.message().text().toStdString();
+}
+
+}  // namespace
+}  // namespace beam
