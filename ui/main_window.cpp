@@ -220,14 +220,13 @@ void MainWindow::makeDocks() {
   connect(settings_, &SettingsPanel::attentionWanted, inspector_,
           [this] { inspector_->setCurrentWidget(settings_); });
   log_ = new LogPanel;
-  QDockWidget* left = dock("project", "Project", project_panel_, Qt::LeftDockWidgetArea);
-  QDockWidget* right = dock("inspector", "Inspector", inspector_, Qt::RightDockWidgetArea);
+  dock("project", "Project", project_panel_, Qt::LeftDockWidgetArea);
+  dock("inspector", "Inspector", inspector_, Qt::RightDockWidgetArea);
   QDockWidget* bottom = dock("log", "Log", log_, Qt::BottomDockWidgetArea);
   timeline_ = new TimelinePanel(model_, player_);
   QDockWidget* timeline = dock("timeline", "Timeline", timeline_, Qt::BottomDockWidgetArea);
   tabifyDockWidget(timeline, bottom);
   timeline->raise();
-  resizeDocks({left, right}, {280, 340}, Qt::Horizontal);
   auto* problems = new ProblemsPanel(problems_);
   problems_dock_ = dock("problems", "Problems", problems, Qt::BottomDockWidgetArea);
   connect(problems, &ProblemsPanel::titleChanged, problems_dock_, &QDockWidget::setWindowTitle);
@@ -250,8 +249,6 @@ void MainWindow::fitToScreen() {
   const QScreen* screen = QGuiApplication::primaryScreen();
   const QSize room = screen ? screen->availableGeometry().size() - kFrame : kUsualSize;
   resize(kUsualSize.boundedTo(room).expandedTo(kLeastSize));
-  resizeDocks({findChild<QDockWidget*>("timeline")}, {std::clamp(27 * height() / 100, 170, 260)},
-              Qt::Vertical);
 }
 
 void MainWindow::showView(StudioView view) {
@@ -348,6 +345,7 @@ void MainWindow::showPanels(bool shown) {
     if (shown) {
       restoreState(panels_state_);
       panels_state_.clear();
+      if (memory_.bytes("docks").isEmpty()) sizePanels();
     } else {
       panels_state_ = saveState();
       for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->hide();
@@ -358,6 +356,13 @@ void MainWindow::showPanels(bool shown) {
     dock->toggleViewAction()->setToolTip(shown ? "Show or hide the panel " + dock->objectName()
                                                : "Panels are shown once a capture or project is open.");
   }
+}
+
+// As at first; what a person made of them comes back with the state that was kept.
+void MainWindow::sizePanels() {
+  const auto dock = [this](const char* name) { return findChild<QDockWidget*>(name); };
+  resizeDocks({dock("project"), dock("inspector")}, {280, 340}, Qt::Horizontal);
+  resizeDocks({dock("timeline")}, {std::clamp(28 * height() / 100, 170, 270)}, Qt::Vertical);
 }
 
 void MainWindow::recallTimes() {

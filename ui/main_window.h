@@ -121,6 +121,7 @@ class MainWindow final : public QMainWindow {
   void recallTimes();
   // The panels are of a project: the start page has the window to itself.
   void showPanels(bool shown);
+  void sizePanels();
 
   // --- Commands: what can be done and why not ---
   void makeCommands();

@@ -343,6 +343,7 @@ void MainWindow::chooseLook(Theme theme, int text_percent) {
 
 void MainWindow::resetLayout() {
   restoreState(fresh_state_);
+  sizePanels();
   reading_->setText("Panels are where they were at first");
 }
 

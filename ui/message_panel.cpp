@@ -16,7 +16,7 @@
 namespace beam {
 namespace {
 
-constexpr double kMostShare = 0.3;  // of the window's height
+constexpr double kMostShare = 0.22;  // of the window's height
 
 }  // namespace
 

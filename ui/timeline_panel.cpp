@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kSides = 16, kSpacing = 4;
 constexpr int kLeastLetters = 5;     // of the words beside the buttons
-constexpr double kDockShare = 0.36;  // of the window's height that the dock may insist on
+constexpr double kDockShare = 0.38;  // of the window's height that the dock may insist on
 constexpr double kOtherLines = 6.5;  // lines of text that its title, tabs and the transport row take
 
 QToolButton* button(QHBoxLayout* row, const QString& name) {

@@ -60,6 +60,9 @@ void SceneLabels::paintAxisNames(QPainter& painter) const {
     end[axis] = 0.52f * kGridExtent_m;
     const auto at = state_.onScreen(end);
     if (!at) continue;
+    // A name that the border would cut is none.
+    const QRectF words = QRectF(painter.fontMetrics().boundingRect(names[axis])).translated(*at);
+    if (!QRectF(rect()).contains(words.adjusted(-1, -1, 2, 2))) continue;
     for (const QPointF& shadow : {QPointF(1, 1), QPointF(0, 0)}) {
       painter.setPen(shadow.isNull() ? kWords : QColor(16, 17, 19));
       painter.drawText(*at + shadow, names[axis]);

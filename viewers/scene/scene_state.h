@@ -85,6 +85,7 @@ struct SceneView::State {
   SceneView& owner;
   QVTKOpenGLNativeWidget* vtk = nullptr;
   QWidget* labels = nullptr;  // over the picture
+  WrappingRow* button_row = nullptr;
   ElidedLine* facts = nullptr;
   std::array<QToolButton*, kSceneLayerCount> toggles{};
   vtkSmartPointer<vtkGenericOpenGLRenderWindow> window = vtkSmartPointer<vtkGenericOpenGLRenderWindow>::New();

@@ -5,6 +5,7 @@
 #include <vtkProperty.h>
 #include <vtkRenderWindowInteractor.h>
 
+#include <QResizeEvent>
 #include <QVBoxLayout>
 
 #include "core/base/error.h"
@@ -13,6 +14,7 @@
 namespace beam {
 namespace {
 
+constexpr int kLeastLines = 4;  // of text: the height that is kept for the picture
 constexpr float kGridCell_m = 0.25f;
 constexpr int kRest_ms = 160;  // without movement before the whole mesh
 
@@ -60,6 +62,7 @@ void SceneView::State::addActors() {
 
 void SceneView::State::layOut() {
   auto* row = new WrappingRow(6);
+  button_row = row;
   row->setContentsMargins(8, 6, 8, 6);
   for (int i = 0; i < kSceneLayerCount; ++i) {
     auto* button = new QToolButton;
@@ -218,6 +221,17 @@ QImage SceneView::picture() {
   state_->rest();
   if (!state_->vtk->isVisible()) state_->window->Render();
   return state_->vtk->grab().toImage();
+}
+
+// The buttons wrap where the view is narrow; what they then need is no view's minimum by itself.
+QSize SceneView::minimumSizeHint() const {
+  const int words = state_->button_row->heightForWidth(width()) + state_->facts->sizeHint().height();
+  return {QWidget::minimumSizeHint().width(), words + kLeastLines * fontMetrics().height()};
+}
+
+void SceneView::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  if (event->oldSize().width() != width()) updateGeometry();
 }
 
 bool SceneView::settled() const {

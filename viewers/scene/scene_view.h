@@ -68,12 +68,15 @@ class SceneView final : public QWidget {
   bool handleKey(const QKeyEvent& event);
   bool settled() const;
 
+  QSize minimumSizeHint() const override;
+
  Q_SIGNALS:
   void jointPicked(int joint);                 // -1: pressed where none is
   void cameraPicked(beam::ViewIndex view);     // pressed, or stepped to with [ and ]
   void cameraActivated(beam::ViewIndex view);  // pressed twice: the view looks through it
 
  protected:
+  void resizeEvent(QResizeEvent* event) override;
   bool event(QEvent* event) override;
   bool eventFilter(QObject* watched, QEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
