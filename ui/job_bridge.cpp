@@ -24,7 +24,6 @@ void JobBridge::start(const Project& project, const RunRequest& request,
   runner_.start(project, request, std::move(device));
   busy_ = true;
   timer_.start();
-  Q_EMIT started();
 }
 
 void JobBridge::requestStop() { runner_.requestStop(); }

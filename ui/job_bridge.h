@@ -24,7 +24,6 @@ class JobBridge final : public QObject {
   bool busy() const { return busy_; }
 
  Q_SIGNALS:
-  void started();
   void stageStarted(const beam::StageStarted& stage);
   void progressed(const beam::StepProgress& progress);
   void stepFinished(const beam::StepFinished& step);

@@ -230,6 +230,7 @@ void MainWindow::makeDocks() {
   auto* problems = new ProblemsPanel(problems_);
   problems_dock_ = dock("problems", "Problems", problems, Qt::BottomDockWidgetArea);
   connect(problems, &ProblemsPanel::titleChanged, problems_dock_, &QDockWidget::setWindowTitle);
+  connect(problems, &ProblemsPanel::told, this, [this](const QString& words) { reading_->setText(words); });
   tabifyDockWidget(bottom, problems_dock_);
   timeline->raise();
   settings_->setStage(rail_->selected());

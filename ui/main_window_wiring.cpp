@@ -209,6 +209,7 @@ void MainWindow::connectTask() {
 void MainWindow::connectPlayer() {
   connect(&player_, &Player::playingChanged, this, &MainWindow::showPlaying);
   connect(splat_, &SplatView::pictureShown, &player_, &Player::poll);
+  connect(&images_->view(), &ImageView::pictureShown, &player_, &Player::poll);
 }
 
 void MainWindow::showPlaying() {

@@ -5,6 +5,7 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -12,6 +13,7 @@
 #include <algorithm>
 
 #include "ui/theme.h"
+#include "ui/words.h"
 
 namespace beam {
 namespace {
@@ -107,8 +109,7 @@ ProblemsPanel::ProblemsPanel(ProblemList& problems, QWidget* parent)
   rows_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
   rows_->setAccessibleName("Problems, newest first");
   copy_row_ = new QAction("Copy", rows_);
-  copy_row_->setShortcut(QKeySequence::Copy);
-  copy_row_->setShortcutContext(Qt::WidgetShortcut);
+  rows_->installEventFilter(this);
   rows_->addAction(copy_row_);
   rows_->setContextMenuPolicy(Qt::ActionsContextMenu);
   empty_->setObjectName("quiet");
@@ -130,9 +131,21 @@ ProblemsPanel::ProblemsPanel(ProblemList& problems, QWidget* parent)
   column->addWidget(empty_, 1);
   connect(copy_row_, &QAction::triggered, this, [this] { copy(false); });
   connect(copy_all_, &QToolButton::clicked, this, [this] { copy(true); });
+  connect(rows_, &QListWidget::itemClicked, this,
+          [this](const QListWidgetItem* pressed) { Q_EMIT told(pressed->toolTip()); });
   connect(clear_, &QToolButton::clicked, &problems_, &ProblemList::clear);
   connect(&problems_, &ProblemList::changed, this, &ProblemsPanel::refresh);
   refresh();
+}
+
+// The keys of copying are the list's, not the window's.
+bool ProblemsPanel::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == rows_ && event->type() == QEvent::KeyPress &&
+      static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy)) {
+    copy(false);
+    return true;
+  }
+  return QWidget::eventFilter(watched, event);
 }
 
 QString ProblemsPanel::title() const {
@@ -160,12 +173,17 @@ void ProblemsPanel::refresh() {
   Q_EMIT titleChanged(told_);
 }
 
-void ProblemsPanel::copy(bool all) const {
+void ProblemsPanel::copy(bool all) {
   QStringList lines;
   for (int i = 0; i < rows_->count(); ++i) {
     if (all || rows_->item(i)->isSelected()) lines << rows_->item(i)->text();
   }
-  if (!lines.isEmpty()) QApplication::clipboard()->setText(lines.join("\n"));
+  if (lines.isEmpty()) {
+    Q_EMIT told("No problem is chosen; nothing was copied");
+    return;
+  }
+  QApplication::clipboard()->setText(lines.join("\n"));
+  Q_EMIT told(countText(lines.size(), "problem") + " copied");
 }
 
 }  // namespace beam

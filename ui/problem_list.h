@@ -66,10 +66,14 @@ class ProblemsPanel final : public QWidget {
 
  Q_SIGNALS:
   void titleChanged(const QString& title);
+  void told(const QString& words);  // the row that was pressed, whole; that something was copied
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
   void refresh();
-  void copy(bool all) const;
+  void copy(bool all);
 
   ProblemList& problems_;
   QListWidget* rows_;

@@ -101,7 +101,6 @@ void StageRail::select(const std::string& stage) {
   if (stage == selected_) return;
   selected_ = stage;
   update();
-  Q_EMIT selectedChanged(stage);
 }
 
 void StageRail::choose(int index) {

@@ -34,7 +34,6 @@ class StageRail final : public QWidget {
   QString tipOf(const std::string& stage) const;
 
  Q_SIGNALS:
-  void selectedChanged(const std::string& stage);
   // A person pressed a stage, be it the selected one.
   void chosen(const std::string& stage);
 

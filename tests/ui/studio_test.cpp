@@ -133,10 +133,10 @@ TEST_F(Studio, SaysWhatIsWrongWithAPathThatCannotBeOpened) {
 
 TEST_F(Studio, RunsAStageInTheBackgroundWithPreviewAndProgress) {
   ASSERT_TRUE(openCapture());
-  window.model().set("surface.steps", FieldValue(300));
+  window.model().set("surface.steps", FieldValue(2000));
   window.run();
   EXPECT_TRUE(window.job().busy());
-  EXPECT_TRUE(waitFor([&] { return window.runBar().text().contains("300"); }))
+  EXPECT_TRUE(waitFor([&] { return window.runBar().text().contains("2,000"); }))
       << window.runBar().text().toStdString();
   EXPECT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
   EXPECT_TRUE(window.runBar().text().startsWith("Done")) << window.runBar().text().toStdString();
@@ -161,9 +161,9 @@ TEST_F(Studio, CancelsARunAndStaysUsable) {
 
 TEST_F(Studio, SaysThatItStopsAfterTheStepAndKeepsIt) {
   ASSERT_TRUE(openCapture());
-  window.model().set("surface.steps", FieldValue(600));
+  window.model().set("surface.steps", FieldValue(2000));
   window.run();
-  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("600"); }));
+  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("2,000"); }));
   window.commands().action("stop_after_step")->trigger();
   EXPECT_TRUE(window.runBar().text().contains("after this step")) << window.runBar().text().toStdString();
   ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
@@ -172,10 +172,10 @@ TEST_F(Studio, SaysThatItStopsAfterTheStepAndKeepsIt) {
 
 TEST_F(Studio, TakesAChangeDuringARunForTheNextOne) {
   ASSERT_TRUE(openCapture());
-  window.model().set("surface.steps", FieldValue(400));
+  window.model().set("surface.steps", FieldValue(2000));
   window.run();
-  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("400"); }));
-  window.model().set("surface.steps", FieldValue(401));
+  ASSERT_TRUE(waitFor([&] { return window.runBar().text().contains("2,000"); }));
+  window.model().set("surface.steps", FieldValue(2001));
   ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.settled(); }));
   EXPECT_EQ(window.model().stages()[0].done, 0) << "of the settings in force, which are of the next run";
   EXPECT_EQ(window.model().stages()[0].stale_frames, 1);
