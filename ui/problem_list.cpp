@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ui/problem_list.h"
 
-#include <QAction>
 #include <QApplication>
 #include <QClipboard>
 #include <QHBoxLayout>
@@ -108,10 +107,7 @@ ProblemsPanel::ProblemsPanel(ProblemList& problems, QWidget* parent)
   rows_->setResizeMode(QListView::Adjust);
   rows_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
   rows_->setAccessibleName("Problems, newest first");
-  copy_row_ = new QAction("Copy", rows_);
   rows_->installEventFilter(this);
-  rows_->addAction(copy_row_);
-  rows_->setContextMenuPolicy(Qt::ActionsContextMenu);
   empty_->setObjectName("quiet");
   empty_->setWordWrap(true);
   empty_->setAlignment(Qt::AlignCenter);
@@ -129,7 +125,6 @@ ProblemsPanel::ProblemsPanel(ProblemList& problems, QWidget* parent)
   column->addLayout(row);
   column->addWidget(rows_, 1);
   column->addWidget(empty_, 1);
-  connect(copy_row_, &QAction::triggered, this, [this] { copy(false); });
   connect(copy_all_, &QToolButton::clicked, this, [this] { copy(true); });
   connect(rows_, &QListWidget::itemClicked, this,
           [this](const QListWidgetItem* pressed) { Q_EMIT told(pressed->toolTip()); });
@@ -164,8 +159,6 @@ void ProblemsPanel::refresh() {
   rows_->setVisible(any);
   empty_->setVisible(!any);
   for (QToolButton* button : {copy_all_, clear_}) button->setEnabled(any);
-  copy_row_->setEnabled(any);
-  copy_row_->setToolTip(any ? "Copy the chosen problems as text" : "There are no problems to copy");
   copy_all_->setToolTip(any ? "Copy every problem as text" : "There are no problems to copy");
   clear_->setToolTip(any ? "Empty the list; what is still wrong is told again" : "There are no problems");
   if (title() == told_) return;
@@ -183,7 +176,8 @@ void ProblemsPanel::copy(bool all) {
     return;
   }
   QApplication::clipboard()->setText(lines.join("\n"));
-  Q_EMIT told(countText(lines.size(), "problem") + " copied");
+  Q_EMIT told(all ? "All copied: " + countText(lines.size(), "problem")
+                  : "Copied: " + lines.join(" · ").simplified());
 }
 
 }  // namespace beam

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-class QAction;
 class QLabel;
 class QToolButton;
 
@@ -78,7 +77,6 @@ class ProblemsPanel final : public QWidget {
   ProblemList& problems_;
   QListWidget* rows_;
   QLabel* empty_;
-  QAction* copy_row_;
   QToolButton *copy_all_, *clear_;
   QString told_;
 };
