@@ -116,7 +116,7 @@ void MainWindow::addFileCommands() {
   commands_.add("open_sample",
                 {"Open sample",
                  "A small made-up capture with known truth; the first time it is made, which takes "
-                 "about a minute",
+                 "a minute or two",
                  {},
                  [this] { openSample(); },
                  [this] { return refusalToSample(); }});
