@@ -88,6 +88,7 @@ void MainWindow::stopAfter(StopAfter what) {
 
 // Of the commands that run, before they are pressed.
 void MainWindow::askForecast() {
+  if (player_.playing()) return;  // frames pass by; it reads every record of the project
   if (!model_.isOpen() || model_.captureLost() || job_.busy()) return forecast_.forget();
   std::vector<RunRequest> requests;
   for (const RunScope scope : {RunScope::Frame, RunScope::Range, RunScope::Take})

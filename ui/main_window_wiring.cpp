@@ -4,6 +4,7 @@
 #include <QStackedWidget>
 
 #include <algorithm>
+#include <utility>
 
 #include "ui/elided_label.h"
 #include "ui/image_page.h"
@@ -134,12 +135,15 @@ void MainWindow::connectViews() {
   connect(splat_, &SplatView::hovered, reading_, &ElidedLabel::setText);
   connect(splat_, &SplatView::pictureShown, this, &MainWindow::showStatus);
   connect(&images_->view(), &ImageView::hovered, reading_, &ElidedLabel::setText);
-  connect(splat_, &SplatView::stateChanged, this, [this](const ViewState& state) {
-    commands_.refresh();
-    if (state.look_through == looked_through_) return;
-    looked_through_ = state.look_through;
-    if (looked_through_) showCamera(*looked_through_);
-  });
+  // Every move of the hand tells of a state; of what it holds only the channel matters to commands, which
+  // look at the disk.
+  connect(splat_, &SplatView::stateChanged, this,
+          [this, channel = splat_->state().channel](const ViewState& state) mutable {
+            if (std::exchange(channel, state.channel) != state.channel) commands_.refresh();
+            if (state.look_through == looked_through_) return;
+            looked_through_ = state.look_through;
+            if (looked_through_) showCamera(*looked_through_);
+          });
   connect(scene_, &SceneView::cameraPicked, this, &MainWindow::showCamera);
   connect(scene_, &SceneView::cameraActivated, splat_, &SplatView::lookThrough);  // which shows it
   connect(images_, &ImagePage::cameraChosen, this, &MainWindow::showCamera);
@@ -217,6 +221,7 @@ void MainWindow::showPlaying() {
     splat_->setPassing(0);
     timeline_->setPictureNote({});
     showStages();
+    askForecast();
     return showValues();
   }
   const double interval_ms = 1000 / player_.clock().takeRate();
