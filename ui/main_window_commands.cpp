@@ -43,6 +43,11 @@ const char* const kKeys =
 const char* const kWhatItIs =
     "Turns multi-view photographs of a person in a lit dome into Gaussians that can be relit.";
 
+// One that is not on disk yet can be written, wherever it is to lie.
+bool cannotBeWritten(const Project& project) {
+  return Project::isProject(project.folder()) && project.readOnly();
+}
+
 }  // namespace
 
 // --- Why something cannot be done now; empty: it can ---
@@ -66,8 +71,7 @@ QString MainWindow::refusalToRun() const {
   if (const QString why = refusalToOpen(); !why.isEmpty()) return why;
   if (const QString why = refusalWithoutProject(); !why.isEmpty()) return why;
   if (model_.captureLost()) return "The capture is not where it was: locate it first.";
-  const Project& project = model_.project();
-  if (Project::isProject(project.folder()) && project.readOnly())
+  if (cannotBeWritten(model_.project()))
     return "The project is read-only: make its folder writable, or save it as another one.";
   return {};
 }
@@ -126,8 +130,7 @@ void MainWindow::addFileCommands() {
                                   QKeySequence("Ctrl+S"), [this] { saveSettings(); },
                                   [this] {
                                     if (!model_.isOpen()) return refusalWithoutProject();
-                                    const Project& project = model_.project();
-                                    return Project::isProject(project.folder()) && project.readOnly()
+                                    return cannotBeWritten(model_.project())
                                                ? QString("The project is read-only.")
                                                : QString();
                                   }});
