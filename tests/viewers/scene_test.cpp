@@ -131,6 +131,25 @@ class SceneHand : public ::testing::Test {
   QOpenGLWidget* picture = nullptr;
 };
 
+// Another page than this one must not wait for geometry that nobody sees.
+TEST_F(SceneHand, BuildsWhatCanBeSeen) {
+  view.setLayerShown(SceneLayer::Gaussians, false);
+  view.setMesh(sheet(20));
+  view.setCloud(ball());
+  settle();
+  EXPECT_EQ(view.drawnTriangles(), 0u);
+  view.setLayerShown(SceneLayer::Mesh, true);
+  settle();
+  EXPECT_EQ(view.drawnTriangles(), 800u);
+  view.hide();
+  view.setMesh(sheet(30));
+  EXPECT_TRUE(view.settled());
+  EXPECT_EQ(view.drawnTriangles(), 800u);
+  view.show();
+  settle();
+  EXPECT_EQ(view.drawnTriangles(), 1800u);
+}
+
 TEST_F(SceneHand, ZoomsWithTheWheelToThePointer) {
   const float before = view.orbit().distance_m;
   const QImage first = seen();

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "viewers/scene/coarse_mesh.h"
 #include "viewers/scene/scene_state.h"
@@ -109,7 +110,7 @@ void SceneView::State::updateSizes() {
   mark->GetProperty()->SetLineWidth(3 * ratio);
 }
 
-void SceneView::State::show(SceneLayer layer, const BuiltLayer& data, const QString& count) {
+void SceneView::State::show(SceneLayer layer, const BuiltLayer& data) {
   const int i = static_cast<int>(layer);
   const auto put = [](vtkActor* actor, const PolyData& geometry) {
     static_cast<vtkPolyDataMapper*>(actor->GetMapper())
@@ -117,26 +118,35 @@ void SceneView::State::show(SceneLayer layer, const BuiltLayer& data, const QStr
   };
   put(actors[i], data.full);
   put(coarse[i], data.coarse);
-  counts[i] = count;
   arrived[i] = tickets[i];
-  updateFacts();
   render();
 }
 
 void SceneView::State::build(SceneLayer layer, std::function<BuiltLayer()> make_data, const QString& count) {
-  const int ticket = ++tickets[static_cast<int>(layer)];
-  if (!make_data) {
-    show(layer, {}, {});
-    return;
+  const int i = static_cast<int>(layer);
+  arrived[i] = ++tickets[i];  // what is being built is not waited for
+  counts[i] = count;
+  waiting[i] = std::move(make_data);
+  updateFacts();
+  if (waiting[i]) {
+    buildIfSeen(layer);
+  } else {
+    show(layer, {});
   }
-  workers[static_cast<int>(layer)].submit([this, layer, make_data = std::move(make_data), count, ticket] {
+}
+
+void SceneView::State::buildIfSeen(SceneLayer layer) {
+  const int i = static_cast<int>(layer);
+  if (!waiting[i] || !shown[i] || !owner.isVisible()) return;
+  const int ticket = ++tickets[i];
+  workers[i].submit([this, layer, make_data = std::exchange(waiting[i], {}), ticket] {
     // Handed over whole: who drops one of several references to a data object walks it for cycles
     // (vtkGarbageCollector), which must not meet the last reference dropped by another thread.
     BuiltLayer data = make_data();
     QMetaObject::invokeMethod(
         &owner,
-        [this, layer, data = std::move(data), count, ticket] {
-          if (tickets[static_cast<int>(layer)] == ticket) show(layer, data, count);
+        [this, layer, data = std::move(data), ticket] {
+          if (tickets[static_cast<int>(layer)] == ticket) show(layer, data);
         },
         Qt::QueuedConnection);
   });
@@ -220,6 +230,7 @@ void SceneView::State::buildJoints() {
 
 void SceneView::setMesh(std::shared_ptr<const Mesh> mesh) {
   State& s = *state_;
+  if (mesh == s.mesh) return;
   s.mesh = std::move(mesh);
   if (!s.mesh || s.mesh->triangles.empty()) {
     s.build(SceneLayer::Mesh, {}, {});

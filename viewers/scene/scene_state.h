@@ -46,7 +46,8 @@ struct SceneView::State {
   void setUpWindow();
 
   // Layers (scene_layers.cpp).
-  void show(SceneLayer layer, const BuiltLayer& data, const QString& count);
+  void show(SceneLayer layer, const BuiltLayer& data);
+  void buildIfSeen(SceneLayer layer);  // else what it needs keeps waiting
   void build(SceneLayer layer, std::function<BuiltLayer()> make_data, const QString& count);
   void buildCapture();
   void buildCloud();
@@ -96,6 +97,7 @@ struct SceneView::State {
   vtkSmartPointer<vtkActor> mark;
   std::array<bool, kSceneLayerCount> shown{};
   std::array<QString, kSceneLayerCount> counts;
+  std::array<std::function<BuiltLayer()>, kSceneLayerCount> waiting;  // until somebody can see it
 
   std::shared_ptr<const CaptureSet> capture;
   std::shared_ptr<const GaussianCloud> cloud;

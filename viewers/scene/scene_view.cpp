@@ -119,7 +119,7 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), state_(std::make_unique
   s.addActors();
   s.setUpWindow();
   s.updateFacts();
-  s.show(SceneLayer::Grid, {gridAndAxes(kGridExtent_m, kGridCell_m), {}}, {});
+  s.show(SceneLayer::Grid, {gridAndAxes(kGridExtent_m, kGridCell_m), {}});
   showLayersOfTheBeginning();
   goHome();
 }
@@ -148,6 +148,7 @@ void SceneView::setCapture(std::shared_ptr<const CaptureSet> capture) {
 }
 
 void SceneView::setCloud(std::shared_ptr<const GaussianCloud> cloud) {
+  if (cloud == state_->cloud) return;
   state_->cloud = std::move(cloud);
   state_->buildCloud();
   state_->buildJoints();
@@ -186,6 +187,7 @@ void SceneView::setLayerShown(SceneLayer layer, bool shown) {
   if (s.shown[i] == shown) return;
   s.shown[i] = shown;
   s.toggles[i]->setChecked(shown);
+  s.buildIfSeen(layer);
   s.updateVisibility();
   s.render();
 }
@@ -232,6 +234,11 @@ QSize SceneView::minimumSizeHint() const {
 void SceneView::resizeEvent(QResizeEvent* event) {
   QWidget::resizeEvent(event);
   if (event->oldSize().width() != width()) updateGeometry();
+}
+
+void SceneView::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  for (int i = 0; i < kSceneLayerCount; ++i) state_->buildIfSeen(static_cast<SceneLayer>(i));
 }
 
 bool SceneView::settled() const {

@@ -26,7 +26,8 @@ class SceneView final : public QWidget {
   explicit SceneView(QWidget* parent = nullptr);
   ~SceneView() override;
 
-  // Null takes the layer's content away. Geometry is built on a background thread.
+  // Null takes the layer's content away. Geometry is built on a background thread, once its
+  // layer can be seen.
   // Another capture starts from home with the layers of the beginning: all but the mesh.
   void setCapture(std::shared_ptr<const CaptureSet> capture);
   void setCloud(std::shared_ptr<const GaussianCloud> cloud);
@@ -77,6 +78,7 @@ class SceneView final : public QWidget {
 
  protected:
   void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
   bool event(QEvent* event) override;
   bool eventFilter(QObject* watched, QEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
