@@ -92,12 +92,15 @@ MainWindow::MainWindow(StudioServices services, Layout layout)
       joints_(model_) {
   setAcceptDrops(true);
   setMinimumSize(kLeastSize);
-  makeParts();
-  makeCommands();
-  makeTop();
-  makeCentre();
-  makeDocks();
-  makeMenus();
+  {
+    const WithoutSheet bare;
+    makeParts();
+    makeCommands();
+    makeTop();
+    makeCentre();
+    makeDocks();
+    makeMenus();
+  }
   connectModel();
   connectViews();
   connectJob();

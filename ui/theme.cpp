@@ -162,6 +162,14 @@ void applyTheme(QApplication& application, Theme theme, double text_scale) {
     application.setStyleSheet(filledIn(QString::fromUtf8(sheet.readAll()), wordsOfSheet(look(), scale)));
 }
 
+WithoutSheet::WithoutSheet() : sheet_(qApp->styleSheet()) {
+  if (!sheet_.isEmpty()) qApp->setStyleSheet({});
+}
+
+WithoutSheet::~WithoutSheet() {
+  if (!sheet_.isEmpty()) qApp->setStyleSheet(sheet_);
+}
+
 QFont smallFont(const QFont& font) {
   QFont small = font;
   if (font.pixelSize() > 0) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <QColor>
+#include <QString>
 
 class QApplication;
 class QFont;
@@ -26,6 +27,19 @@ const Colors& colors();
 
 // `text_scale`: of all text, 1 to 2. System: light where the desktop's windows are.
 void applyTheme(QApplication& application, Theme theme = Theme::Dark, double text_scale = 1);
+
+// While it lives widgets are built without the program's sheet; its end dresses them all at once. Under a
+// sheet Qt polishes a whole subtree anew at every move into a parent, which is half the time a window takes.
+class WithoutSheet {
+ public:
+  WithoutSheet();
+  ~WithoutSheet();
+  WithoutSheet(const WithoutSheet&) = delete;
+  WithoutSheet& operator=(const WithoutSheet&) = delete;
+
+ private:
+  QString sheet_;
+};
 
 // The text of notes beside drawings: a little smaller than the widget's.
 QFont smallFont(const QFont& font);
