@@ -113,9 +113,9 @@ QString askNewProject(QWidget* parent, SessionMemory& memory, const QString& tit
   return folder;
 }
 
-QString askPanorama(QWidget* parent, SessionMemory& memory) {
-  const QString file = QFileDialog::getOpenFileName(parent, "Open a panorama of light",
-                                                    memory.folderFor("light"), "Panoramas (*.exr *.hdr)");
+QString askPanorama(QWidget* parent, SessionMemory& memory, const QString& title) {
+  const QString file =
+      QFileDialog::getOpenFileName(parent, title, memory.folderFor("light"), "Panoramas (*.exr *.hdr)");
   if (!file.isEmpty()) memory.keepFolder("light", QFileInfo(file).absolutePath());
   return file;
 }

@@ -19,7 +19,7 @@ FolderKind folderKind(const QString& folder);
 QString askCaptureFolder(QWidget* parent, SessionMemory& memory, const QString& title);
 QString askProjectFolder(QWidget* parent, SessionMemory& memory);
 QString askNewProject(QWidget* parent, SessionMemory& memory, const QString& title, const QString& proposed);
-QString askPanorama(QWidget* parent, SessionMemory& memory);
+QString askPanorama(QWidget* parent, SessionMemory& memory, const QString& title);
 // Ends in ".png".
 QString askPictureFile(QWidget* parent, SessionMemory& memory, const QString& proposed);
 

@@ -42,6 +42,7 @@
 #include "viewers/image/image_view.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
+#include "viewers/view_keys.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -220,11 +221,13 @@ void MainWindow::makeDocks() {
     if (!settings_->setStage(stage)) rail_->select(settings_->stage());
     inspector_->setCurrentWidget(settings_);
   });
-  connect(settings_, &SettingsPanel::attentionWanted, inspector_,
-          [this] { inspector_->setCurrentWidget(settings_); });
   log_ = new LogPanel;
   dock("project", "Project", project_panel_, Qt::LeftDockWidgetArea);
-  dock("inspector", "Inspector", inspector_, Qt::RightDockWidgetArea);
+  QDockWidget* inspector = dock("inspector", "Inspector", inspector_, Qt::RightDockWidgetArea);
+  connect(settings_, &SettingsPanel::attentionWanted, inspector_, [this, inspector] {
+    inspector->show();
+    inspector_->setCurrentWidget(settings_);
+  });
   QDockWidget* bottom = dock("log", "Log", log_, Qt::BottomDockWidgetArea);
   timeline_ = new TimelinePanel(model_, player_);
   QDockWidget* timeline = dock("timeline", "Timeline", timeline_, Qt::BottomDockWidgetArea);
@@ -286,6 +289,17 @@ bool MainWindow::viewFollows() const {
 bool MainWindow::settled() const {
   if (task_.busy() || !model_.settled() || !lights_.settled()) return false;
   return !model_.isOpen() || viewSettled();
+}
+
+// Ctrl with a digit of the number pad looks from the other side, wherever the focus is; without the pad it
+// chooses a view.
+bool MainWindow::event(QEvent* event) {
+  if (event->type() == QEvent::ShortcutOverride && presetOf(*static_cast<QKeyEvent*>(event)) &&
+      !takesText(focusWidget())) {
+    event->accept();
+    return true;
+  }
+  return QMainWindow::event(event);
 }
 
 // Keys that no text field or list took go to the view that is seen.

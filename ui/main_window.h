@@ -94,6 +94,7 @@ class MainWindow final : public QMainWindow {
   bool showsPreview() const { return previewWins(); }
 
  protected:
+  bool event(QEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
@@ -151,10 +152,12 @@ class MainWindow final : public QMainWindow {
   void openSample();
   void startTask(const QString& what, BackgroundTask::Work work, std::function<void()> then);
   void openLight();
+  void chooseCaptureLight();
   bool takeOverSettings(const QString& what_waits);
   void saveSettings();
   void saveAs();
   void locateCapture();
+  void askForAnotherCapture(const QString& folder, const QString& difference);
   void chooseVersion(const std::filesystem::path& folder);
   void savePicture();
   void closeProject();

@@ -126,6 +126,16 @@ void MainWindow::addFileCommands() {
                  [this] { return refusalToSample(); }});
   commands_.add("open_light", {"Open panorama…", "Light with a panorama, .exr or .hdr",
                                QKeySequence("Ctrl+L"), [this] { openLight(); }, with_project});
+  commands_.add("capture_light",
+                {"Light of the capture…",
+                 "The panorama of the light that the photographs were taken in; Light and Materials need it",
+                 {},
+                 [this] { chooseCaptureLight(); },
+                 [this] {
+                   const QString why = refusalWithoutProject();
+                   return why.isEmpty() && model_.project().readOnly() ? QString("The project is read-only.")
+                                                                       : why;
+                 }});
   commands_.add("save_settings", {"Save settings", "Write the settings into the project now",
                                   QKeySequence("Ctrl+S"), [this] { saveSettings(); },
                                   [this] {
@@ -373,9 +383,9 @@ void MainWindow::makeMenus() {
     }
     return made;
   };
-  QMenu* file = menu("&File", {"new_project", "open_capture", "open_project", "open_sample", "open_light", "",
-                               "save_settings", "save_as", "earlier_versions", "locate_capture",
-                               "save_picture", "", "close_project", "quit"});
+  QMenu* file = menu("&File", {"new_project", "open_capture", "open_project", "open_sample", "open_light",
+                               "capture_light", "", "save_settings", "save_as", "earlier_versions",
+                               "locate_capture", "save_picture", "", "close_project", "quit"});
   recent_ = new QMenu("Open recent", file);
   recent_->setToolTipsVisible(true);
   file->insertMenu(commands_.action("open_sample"), recent_);

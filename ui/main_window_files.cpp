@@ -81,8 +81,16 @@ void MainWindow::openSample() {
 }
 
 void MainWindow::openLight() {
-  const QString file = askPanorama(this, memory_);
+  const QString file = askPanorama(this, memory_, "Open a panorama of light");
   if (!file.isEmpty()) open(file.toStdString());
+}
+
+// Also shown: whether it can be read, and how the performer looks under it, is seen at once.
+void MainWindow::chooseCaptureLight() {
+  const QString file = askPanorama(this, memory_, "The light that the capture was made in");
+  if (file.isEmpty()) return;
+  model_.setEnvironment(file.toStdString());
+  lights_.add(file.toStdString());
 }
 
 // What is typed counts, whether its field was left or not.
@@ -114,6 +122,23 @@ void MainWindow::saveAs() {
 void MainWindow::locateCapture() {
   const QString folder = askCaptureFolder(this, memory_, "Where the capture is now");
   if (!folder.isEmpty()) model_.locateCapture(folder.toStdString());
+}
+
+void MainWindow::askForAnotherCapture(const QString& folder, const QString& difference) {
+  QMessageBox question(
+      QMessageBox::Warning, "Another capture",
+      QString("\"%1\" is not the capture of this project: %2.\nResults that do not fit it are "
+              "computed anew by the next run.")
+          .arg(folder, difference),
+      QMessageBox::NoButton, this);
+  question.setObjectName("another_capture");
+  QPushButton* use = question.addButton("Use it all the same", QMessageBox::AcceptRole);
+  QPushButton* choose = question.addButton("Choose another folder…", QMessageBox::ActionRole);
+  question.setDefaultButton(choose);
+  question.setEscapeButton(question.addButton(QMessageBox::Cancel));
+  question.exec();
+  if (question.clickedButton() == use) model_.locateCapture(folder.toStdString(), true);
+  if (question.clickedButton() == choose) locateCapture();
 }
 
 void MainWindow::chooseVersion(const fs::path& folder) {

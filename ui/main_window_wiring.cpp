@@ -40,6 +40,11 @@ void MainWindow::connectModel() {
     say(what, why);
     refreshCommands();
   });
+  connect(&model_, &ProjectModel::anotherCapture, this, [this](const QString& folder, const QString& how) {
+    reading_->setText({});
+    refreshCommands();
+    askForAnotherCapture(folder, how);
+  });
   connect(&model_, &ProjectModel::broken, this, [this](const QString& folder, const QString& why) {
     reading_->setText({});
     broken_ = folder.toStdString();

@@ -61,6 +61,7 @@ struct ProjectModel::Opened {
   std::optional<Project> project;
   std::shared_ptr<const CaptureSet> capture;
   QString error;
+  QString difference;   // of a capture that is not the project's, which was not asked for
   bool broken = false;  // its project.json cannot be read, an earlier one can
 };
 
@@ -132,6 +133,10 @@ void ProjectModel::adopt(const std::shared_ptr<Opened>& result) {
     Q_EMIT broken(QString::fromStdString(result->path.string()), result->error);
     return;
   }
+  if (!result->difference.isEmpty()) {
+    Q_EMIT anotherCapture(QString::fromStdString(result->path.string()), result->difference);
+    return;
+  }
   if (!result->error.isEmpty()) {
     Q_EMIT failed("Cannot open " + QString::fromStdString(result->path.filename().string()), result->error);
     return;
@@ -187,17 +192,20 @@ void ProjectModel::startAt(const QString& frame_name) {
   }
 }
 
-void ProjectModel::locateCapture(const fs::path& folder) {
+void ProjectModel::locateCapture(const fs::path& folder, bool other_too) {
   opening_ = true;
   Q_EMIT openingStarted(QString::fromStdString(folder.string()));
-  open_worker_.submit([this, folder, project = *project_]() mutable {
+  open_worker_.submit([this, folder, other_too, project = *project_]() mutable {
     auto result = std::make_shared<Opened>();
     result->path = folder;
     try {
-      project.relocateCapture(folder);
-      result->capture = std::make_shared<const CaptureSet>(project.capture());
-      if (!project.readOnly()) project.save();
-      result->project = std::move(project);
+      if (!other_too) result->difference = QString::fromStdString(project.differenceOfCapture(folder));
+      if (result->difference.isEmpty()) {
+        project.relocateCapture(folder, other_too);
+        result->capture = std::make_shared<const CaptureSet>(project.capture());
+        if (!project.readOnly()) project.save();
+        result->project = std::move(project);
+      }
     } catch (const std::exception& e) {  // the border of this thread: said in the window
       result->error = QString::fromStdString(e.what());
     }

@@ -33,8 +33,8 @@ class ProjectModel final : public QObject {
   void open(const std::filesystem::path& path, const std::filesystem::path& place = {});
   bool opening() const { return opening_; }
   void close();
-  // The capture lies in `folder` now; answers like open().
-  void locateCapture(const std::filesystem::path& folder);
+  // The capture lies in `folder` now; answers like open(), or with anotherCapture() unless `other_too`.
+  void locateCapture(const std::filesystem::path& folder, bool other_too = false);
   // It went away, or came back, while the project is open. Without it results are looked at, nothing is run.
   void setCaptureThere(bool there);
   bool captureLost() const { return project_ && (!capture_there_ || project_->withoutCapture()); }
@@ -91,6 +91,8 @@ class ProjectModel final : public QObject {
   void opened();
   void closed();
   void failed(const QString& what, const QString& why);
+  // The capture to be located is not the project's; `difference`: how they are told apart.
+  void anotherCapture(const QString& folder, const QString& difference);
   // Opening failed because of what project.json says, or lacks; there are earlier versions of it.
   void broken(const QString& folder, const QString& why);
   void settingsChanged();

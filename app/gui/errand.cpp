@@ -107,8 +107,8 @@ void Errand::reportPlay() {
   const PlaybackClock& clock = window_.player().clock();
   const FrameCache& cache = window_.model().cache();
   const std::vector<bool> held = cache.held(window_.model().capture()->frames.size());
-  std::printf("played %.2f of %g fps, %d frames left out, %td frames in memory (%.0f of %.0f MB)\n",
-              clock.rate(), clock.takeRate(), clock.dropped(), std::count(held.begin(), held.end(), true),
+  std::printf("played %.2f of %g fps, %d dropped, %td frames in memory (%.0f of %.0f MB)\n", clock.rate(),
+              clock.takeRate(), clock.dropped(), std::count(held.begin(), held.end(), true),
               1e-6 * static_cast<double>(cache.bytes()), 1e-6 * static_cast<double>(cache.budget()));
   std::fflush(stdout);
 }

@@ -264,14 +264,18 @@ void Project::requireCapture() const {
                                              folder_.string()));
 }
 
-void Project::relocateCapture(const fs::path& folder, bool other_too) {
+std::string Project::differenceOfCapture(const fs::path& folder) const {
   const std::vector<DescriptionFile> found = describeCapture(folder);
   if (found.empty()) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\" is no capture: expected dataset.json, transforms.json or sparse/ in it",
                             folder.string()));
   }
-  if (const std::string other = differenceOf(document_.capture_files, found); !other_too && !other.empty()) {
+  return differenceOf(document_.capture_files, found);
+}
+
+void Project::relocateCapture(const fs::path& folder, bool other_too) {
+  if (const std::string other = differenceOfCapture(folder); !other_too && !other.empty()) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\" is another capture than that of \"{}\", which was at \"{}\": {}",
                             folder.string(), folder_.string(), document_.capture.absolute, other));
@@ -307,7 +311,7 @@ std::optional<fs::path> Project::environmentFile() const {
   throw Error(
       Error::Kind::Data,
       fmt::format("the panorama of \"{}\" is gone: expected it at \"{}\"; put it back or name another with "
-                  "--environment",
+                  "--environment FILE, or in the studio by File > Light of the capture",
                   folder_.string(), document_.environment->absolute));
 }
 

@@ -89,6 +89,9 @@ class Project {
   bool withoutCapture() const { return without_capture_; }
   // Throws Error{Data} in a project that is looked at without its capture.
   void requireCapture() const;
+  // What tells the capture in `folder` from the one of this project, in words; empty: nothing does.
+  // Throws Error{Data} when there is none.
+  std::string differenceOfCapture(const std::filesystem::path& folder) const;
   // The capture is in `folder` now; ends looking without it. One that is described by other bytes, which may
   // not fit the results, is refused unless `other_too`: Error{Data} that tells what differs.
   void relocateCapture(const std::filesystem::path& folder, bool other_too = false);

@@ -215,8 +215,8 @@ std::string Project::blockedReason(std::string_view stage) const {
   });
   if (!needs_environment || environmentFile()) return {};
   return fmt::format(
-      "{} needs a panorama of the light, which the capture does not have: give one with --environment "
-      "FILE (.exr or .hdr, latitude-longitude)",
+      "{} needs a panorama of the light (.exr or .hdr, latitude-longitude), which the capture does not have: "
+      "give one with --environment FILE, or in the studio by File > Light of the capture",
       info.title);
 }
 

@@ -2,7 +2,11 @@
 // What stays in view and what can be done when settings changed, the capture moved, or project.json broke.
 #include <gtest/gtest.h>
 
+#include <QAbstractButton>
 #include <QAction>
+#include <QApplication>
+#include <QMessageBox>
+#include <QTimer>
 
 #include "core/io/file.h"
 #include "tests/support/stand_in_studio.h"
@@ -94,6 +98,36 @@ TEST_F(LostAndFound, SolvedResultsOpenWithoutTheCaptureWhichCanBeLocated) {
       << window.message().text().toStdString();
   EXPECT_TRUE(enabled("run_frame"));
   EXPECT_FALSE(enabled("locate_capture"));
+}
+
+TEST_F(LostAndFound, AnotherCaptureIsTakenOnlyWhenItIsMeant) {
+  fs::remove_all(folder / "capture.beam");  // it was made when nothing described the capture
+  ASSERT_TRUE(open(folder / "capture"));
+  ASSERT_TRUE(window.model().save());
+  fs::rename(folder / "capture", folder / "elsewhere");
+  fs::create_directories(folder / "other");
+  writeFileAtomically(folder / "other" / "dataset.json", "{ }");
+  ASSERT_TRUE(waitFor([&] { return window.model().captureLost() && window.settled(); }));
+  const auto answer = [&](const QString& words) {
+    bool asked = false;
+    QTimer timer;
+    QObject::connect(&timer, &QTimer::timeout, [&] {
+      auto* question = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+      if (!question) return;
+      asked = true;
+      EXPECT_TRUE(question->text().contains("dataset.json")) << question->text().toStdString();
+      for (QAbstractButton* button : question->buttons())
+        if (button->text().remove("&") == words) button->click();
+    });
+    timer.start(50);
+    window.model().locateCapture(folder / "other");
+    return waitFor([&] { return asked && !QApplication::activeModalWidget() && window.settled(); });
+  };
+  ASSERT_TRUE(answer("Cancel"));
+  EXPECT_TRUE(window.model().captureLost());
+  ASSERT_TRUE(answer("Use it all the same"));
+  EXPECT_FALSE(window.model().captureLost());
+  EXPECT_EQ(window.model().project().captureFolder().filename(), "other");
 }
 
 TEST_F(LostAndFound, ACaptureThatGoesWhileItIsOpenIsSaidAndWelcomedBack) {

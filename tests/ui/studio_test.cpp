@@ -4,6 +4,7 @@
 
 #include <QAbstractButton>
 #include <QApplication>
+#include <QDockWidget>
 #include <QLineEdit>
 #include <QMessageBox>
 #include <QTest>
@@ -24,6 +25,7 @@
 #include "ui/settings_panel.h"
 #include "ui/stage_rail.h"
 #include "viewers/gl/functions.h"
+#include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
 
 namespace beam {
@@ -256,6 +258,32 @@ TEST_F(Studio, StartsNoRunWithAValueThatCannotBeTakenAndNamesItsLabel) {
   EXPECT_TRUE(window.job().busy());
   window.cancelRun();
   EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }));
+}
+
+TEST_F(Studio, BringsTheSettingsBackWhenOneOfThemIsWrong) {
+  ASSERT_TRUE(openCapture());
+  auto* inspector = window.findChild<QDockWidget*>("inspector");
+  ASSERT_NE(inspector, nullptr);
+  QTest::keyClicks(&enterField(window, "surface.steps"), "abc");
+  inspector->close();
+  window.run();
+  EXPECT_FALSE(window.job().busy());
+  EXPECT_TRUE(inspector->isVisible());
+}
+
+TEST_F(Studio, LooksFromTheOtherSideWhereverTheFocusIs) {
+  ASSERT_TRUE(openCapture());
+  window.showView(StudioView::Scene);
+  window.activateWindow();
+  window.rail().setFocus();
+  const float before_rad = window.sceneView().orbit().azimuth_rad;
+  QKeyEvent shortcut(QEvent::ShortcutOverride, Qt::Key_1, Qt::KeypadModifier | Qt::ControlModifier);
+  shortcut.ignore();
+  QApplication::sendEvent(&window.rail(), &shortcut);
+  EXPECT_TRUE(shortcut.isAccepted()) << "else Ctrl+1 shows the splats";
+  QKeyEvent press(QEvent::KeyPress, Qt::Key_1, Qt::KeypadModifier | Qt::ControlModifier);
+  QApplication::sendEvent(&window.rail(), &press);
+  EXPECT_NE(window.sceneView().orbit().azimuth_rad, before_rad);
 }
 
 TEST_F(Studio, SavesWhatIsTypedThoughTheFieldWasNotLeft) {
