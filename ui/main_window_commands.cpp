@@ -2,7 +2,6 @@
 // What can be done, its words and keys, and why it cannot be done now.
 #include <QApplication>
 #include <QDockWidget>
-#include <QFileInfo>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QTabBar>
@@ -432,9 +431,9 @@ void MainWindow::fillRecent() {
   const QStringList folders = memory_.recent();
   for (const QString& folder : folders) {
     QAction* action = recent_->addAction(folder, this, [this, folder] { open(folder.toStdString()); });
-    const bool there = QFileInfo::exists(folder);
-    action->setEnabled(there && refusal.isEmpty());
-    action->setToolTip(!there ? folder + " is not there any more." : refusal.isEmpty() ? folder : refusal);
+    const QString why = refusalToReopen(folder, refusal);
+    action->setEnabled(why.isEmpty());
+    action->setToolTip(why.isEmpty() ? folder : why);
   }
   if (folders.isEmpty()) {
     QAction* none = recent_->addAction("Nothing yet");

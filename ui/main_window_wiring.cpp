@@ -24,7 +24,9 @@
 namespace beam {
 namespace {
 
-const char* const kStaleWords = "stale: made with other settings";
+QString staleWords(const FrameValues& values) {
+  return values.stale ? "stale: " + QString::fromStdString(values.stale_note) : QString();
+}
 
 }  // namespace
 
@@ -279,11 +281,11 @@ void MainWindow::showSplats() {
   }
   if (const auto& held = model_.held()) {
     const QString from = QString::fromStdString(model_.capture()->frames[held->from.value]);
-    showBadge(held->values.stale ? kStaleWords : QString());
+    showBadge(staleWords(held->values));
     return splat_->setScene({held->values.cloud, held->values.materials},
                             QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));
   }
-  showBadge(values.stale ? kStaleWords : QString());
+  showBadge(staleWords(values));
   splat_->setScene({values.cloud, values.materials},
                    "frame " + model_.valuesFrameName() + (values.interpolated ? ", interpolated" : ""));
 }

@@ -74,4 +74,8 @@ void SessionMemory::keepFrame(const QString& project, const QString& frame) {
   if (!project.isEmpty()) keepText("frame/" + project, frame);
 }
 
+QString refusalToReopen(const QString& folder, const QString& refusal) {
+  return QFileInfo::exists(folder) ? refusal : folder + " is not there any more.";
+}
+
 }  // namespace beam

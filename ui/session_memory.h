@@ -43,4 +43,7 @@ class SessionMemory {
   QStringList recent_;
 };
 
+// Why a recent project cannot be opened: it is gone, or `refusal` to open any; empty: it can.
+QString refusalToReopen(const QString& folder, const QString& refusal);
+
 }  // namespace beam

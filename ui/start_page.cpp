@@ -10,6 +10,7 @@
 #include <QVBoxLayout>
 
 #include "ui/command_table.h"
+#include "ui/session_memory.h"
 
 namespace beam {
 namespace {
@@ -104,9 +105,9 @@ QPushButton* StartPage::recentButton(const QString& folder) {
   link->setObjectName("recent");
   const QString text = QFileInfo(folder).fileName() + "    " + folder;
   link->setText(link->fontMetrics().elidedText(text, Qt::ElideMiddle, kCardWidth - 110));
-  const bool there = QFileInfo::exists(folder);
-  link->setEnabled(there && refusal_.isEmpty());
-  link->setToolTip(!there ? folder + " is not there any more." : refusal_.isEmpty() ? folder : refusal_);
+  const QString why = refusalToReopen(folder, refusal_);
+  link->setEnabled(why.isEmpty());
+  link->setToolTip(why.isEmpty() ? folder : why);
   connect(link, &QPushButton::clicked, this, [this, folder] { Q_EMIT recentChosen(folder); });
   return link;
 }
