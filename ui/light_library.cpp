@@ -15,20 +15,24 @@ void LightLibrary::reset(const std::filesystem::path& dome) {
   entries_.clear();
   prepared_.clear();
   chosen_ = -1;
+  usable_.clear();
   if (!dome.empty()) entries_.push_back({"Dome of the capture", dome});
   Q_EMIT entriesChanged();
   choose(dome.empty() ? -1 : 0);
 }
 
 void LightLibrary::add(const std::filesystem::path& file) {
-  const auto known =
-      std::find_if(entries_.begin(), entries_.end(), [&](const LightEntry& e) { return e.file == file; });
-  const auto index = static_cast<int>(known - entries_.begin());
-  if (known == entries_.end()) {
+  if (indexOf(file) < 0) {
     entries_.push_back({QString::fromStdString(file.stem().string()), file});
     Q_EMIT entriesChanged();
   }
-  choose(index);
+  choose(indexOf(file));
+}
+
+int LightLibrary::indexOf(const std::filesystem::path& file) const {
+  const auto known =
+      std::find_if(entries_.begin(), entries_.end(), [&](const LightEntry& e) { return e.file == file; });
+  return known == entries_.end() ? -1 : static_cast<int>(known - entries_.begin());
 }
 
 void LightLibrary::choose(int index) {
@@ -36,6 +40,7 @@ void LightLibrary::choose(int index) {
   const std::uint64_t ticket = ++ticket_;
   if (index < 0 || prepared_.contains(entries_[index].file)) {
     seen_ = ticket;
+    usable_ = index < 0 ? std::filesystem::path() : entries_[index].file;
     Q_EMIT lightChanged();
     return;
   }
@@ -54,9 +59,10 @@ void LightLibrary::choose(int index) {
           if (light) prepared_[file] = light;
           if (ticket != ticket_) return;
           seen_ = ticket;
+          if (light) usable_ = file;
           if (!error.isEmpty()) {
             entries_.erase(entries_.begin() + chosen_);
-            chosen_ = -1;
+            chosen_ = indexOf(usable_);
             Q_EMIT failed("This panorama cannot be used", error);
             Q_EMIT entriesChanged();
           }

@@ -29,7 +29,7 @@ class LightLibrary final : public QObject {
 
   // Starts anew with the dome of a capture, if it has one; chooses it.
   void reset(const std::filesystem::path& dome);
-  // Adds the file (once) and chooses it.
+  // Adds the file (once) and chooses it; one that cannot be read leaves the light that was.
   void add(const std::filesystem::path& file);
   void choose(int index);
 
@@ -47,9 +47,12 @@ class LightLibrary final : public QObject {
   void failed(const QString& what, const QString& why);
 
  private:
+  int indexOf(const std::filesystem::path& file) const;  // -1: not there
+
   std::vector<LightEntry> entries_;
   std::map<std::filesystem::path, std::shared_ptr<const PreparedLight>> prepared_;
   int chosen_ = -1;
+  std::filesystem::path usable_;  // the chosen one that was there last; empty: none
   std::uint64_t ticket_ = 0, seen_ = 0;
   LatestWorker worker_;  // last: it stops first
 };

@@ -35,8 +35,9 @@ RunRequest MainWindow::requestOf(const std::string& until, RunScope scope, int e
   if (scope == RunScope::Scout) request.every = std::max(every, 1);
   const FrameRange range =
       scope == RunScope::Frame ? FrameRange{model_.frame().value, model_.frame().value} : player_.range();
-  // A whole take goes on with the takes that are there; named frames would become one of their own.
+  // A whole take goes on with the takes that are there; named frames may become one of their own.
   if (scope == RunScope::Take) return request;
+  request.keeps_takes = true;
   for (int f = range.first; f <= range.last; ++f) request.frames.push_back(FrameIndex{f});
   return request;
 }

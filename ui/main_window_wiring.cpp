@@ -74,7 +74,7 @@ void MainWindow::connectModel() {
   connect(&forecast_, &RunForecast::told, this, &MainWindow::showForecast);
   connect(&lights_, &LightLibrary::lightChanged, this, [this] {
     splat_->setLight(lights_.light(), lights_.name(), lights_.reading());
-    images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading()});
+    images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading(), lights_.name()});
   });
   connect(&lights_, &LightLibrary::failed, this,
           [this](const QString& what, const QString& why) { say(what, why); });
@@ -129,7 +129,7 @@ void MainWindow::connectViews() {
   connect(views_, &QStackedWidget::currentChanged, this, [this] {
     // The light may have been turned since; and a view that is not seen does not follow the frames.
     if (views_->currentWidget() == images_)
-      images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading()});
+      images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading(), lights_.name()});
     showValuesIn(shownView());
     refreshCommands();
   });

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/io/image_file.h"
 #include "core/render/deferred.h"
+#include "viewers/splat/splat_view.h"
 
 namespace beam {
 namespace {
@@ -114,7 +115,11 @@ Picture renderedOf(const Render& r, Channel channel) {
   const GBuffer g = renderer.render(*r.values.cloud, r.values.materials.get(), camera);
   Image<vec3> lit;
   if (channel == Channel::Lit) lit = shade(g, camera, *r.light.light, {.yaw_rad = r.light.yaw_rad});
-  return channelOf(g, lit, channel, fmt::format("Rendered {} · {}", title, r.shot.where));
+  // A figure of a difference says nothing unless the light is that of the photograph.
+  const std::string light = channel == Channel::Lit
+                                ? " · " + lightWords(r.light.name, r.light.yaw_rad).toStdString()
+                                : std::string();
+  return channelOf(g, lit, channel, fmt::format("Rendered {}{} · {}", title, light, r.shot.where));
 }
 
 void addRenders(std::vector<PictureSource>& sources, const Shot& shot, const ProjectModel& model,

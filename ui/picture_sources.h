@@ -37,6 +37,7 @@ struct PictureLight {
   std::shared_ptr<const PreparedLight> light;
   float yaw_rad = 0;
   bool reading = false;
+  QString name = {};
   bool operator==(const PictureLight&) const = default;
 };
 

@@ -287,9 +287,8 @@ void ProjectPanel::setProblems(std::map<std::string, QStringList> problems) {
 
 void ProjectPanel::showProblems() {
   for (QTreeWidgetItemIterator it(cameras_); *it; ++it) {
-    const std::optional<ViewIndex> view = viewOf(*it);
-    if (!view) continue;
-    const auto found = problems_.find(model_.capture()->views[view->value].name);
+    if (!viewOf(*it)) continue;
+    const auto found = problems_.find((*it)->text(kName).toStdString());
     const QStringList texts = found == problems_.end() ? QStringList() : found->second;
     (*it)->setText(kProblems, texts.isEmpty() ? QString() : QString("▲ %1").arg(texts.size()));
     (*it)->setForeground(kProblems, colors().warning);

@@ -59,9 +59,19 @@ int setting(const Project& project, std::string_view name, int fallback) {
   return fallback;
 }
 
+bool goesOnInItsTakes(const Project& project, const RunRequest& request) {
+  if (!request.keeps_takes || request.every > 1) return false;
+  const RunPlan plan = makeRunPlan(project, request);
+  return std::all_of(plan.turns.begin(), plan.turns.end(), [&](const Turn& turn) {
+    const Take take = project.takeOf(turn.of);
+    return take.count() > 1 && !(turn.lead() && project.lacksAny(plan.lead_steps, take, turn.frame));
+  });
+}
+
 }  // namespace
 
 void arrangeTakes(Project& project, const RunRequest& request) {
+  if (goesOnInItsTakes(project, request)) return;
   const int overlap = request.overlap ? *request.overlap : setting(project, "track.overlap", 0);
   if (namesTakes(request)) {
     std::vector<Take> wanted = takesOfFrames(framesOf(project, request), request.every);

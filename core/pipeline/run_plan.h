@@ -19,6 +19,9 @@ struct RunRequest {
   std::string stage = {};  // only this stage and what it needs; empty: every stage
   std::string until = {};  // the last stage; empty: the last there is
   int every = 1;           // K: only every Kth frame, each building on the one K before
+  // Frames that takes of several hold stay in them when all that they build on is solved: the result there is
+  // the frame's, and fitted alone it would be another.
+  bool keeps_takes = false;
   // Of a whole run: the longest take it makes, 0: no longest; absent: the setting track.segment_frames.
   std::optional<int> segment_frames = {};
   // Of new takes: frames solved before their first; absent: the setting track.overlap.

@@ -16,6 +16,7 @@
 
 #include <atomic>
 
+#include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/pipeline/project.h"
 #include "tests/support/sphere_capture.h"
@@ -335,6 +336,24 @@ TEST(Lights, AreBeingReadUntilTheyAreThere) {
   EXPECT_EQ(heard, std::vector<bool>({true, false})) << "the window is told of both";
   lights.reset({});
   EXPECT_FALSE(lights.reading());
+}
+
+TEST(Lights, StayWhereAnotherCannotBeRead) {
+  const TempDir folder;
+  writeExr(folder / "sky.exr", Planes(32, 16, 3, 1.0f), {"R", "G", "B"}, ExrPrecision::Half);
+  writeFileAtomically(folder / "bad.exr", "no panorama");
+  LightLibrary lights;
+  QString why;
+  QObject::connect(&lights, &LightLibrary::failed, &lights,
+                   [&](const QString&, const QString& words) { why = words; });
+  lights.reset(folder / "sky.exr");
+  ASSERT_TRUE(waitFor([&] { return lights.settled(); }));
+  lights.add(folder / "bad.exr");
+  ASSERT_TRUE(waitFor([&] { return lights.settled(); }));
+  EXPECT_FALSE(why.isEmpty());
+  EXPECT_EQ(lights.chosen(), 0);
+  EXPECT_NE(lights.light(), nullptr);
+  EXPECT_EQ(lights.entries().size(), 1u);
 }
 
 // What a widget lets pass arrives at its parent.

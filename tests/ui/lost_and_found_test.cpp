@@ -142,6 +142,16 @@ TEST_F(LostAndFound, ACaptureThatGoesWhileItIsOpenIsSaidAndWelcomedBack) {
   EXPECT_EQ(window.model().stages().front().state, StepState::Done);
 }
 
+TEST_F(LostAndFound, AProjectWithProblemsCloses) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  writeFileAtomically(folder / "bad.exr", "no panorama");
+  window.open(folder / "bad.exr");
+  ASSERT_TRUE(waitFor([&] { return window.message().isVisible() && window.settled(); }));
+  window.commands().action("close_project")->trigger();
+  ASSERT_TRUE(waitFor([&] { return !window.model().isOpen(); }));
+  EXPECT_TRUE(open(folder / "capture.beam"));
+}
+
 TEST_F(LostAndFound, ABrokenProjectOffersItsEarlierVersionsInWords) {
   writeFileAtomically(folder / "capture.beam" / "project.json", "{ half");
   window.open(folder / "capture.beam");

@@ -322,11 +322,15 @@ PictureLayout SplatView::pictureLayout() const {
   return layout;
 }
 
+QString lightWords(const QString& name, float yaw_rad) {
+  return QString("light %1 turned %2°").arg(name).arg(std::lround(yaw_rad * 180 / kPi));
+}
+
 QString SplatView::title() const {
   const Channel channel = shown_.channel;
   QStringList parts{infoOf(channel).title, infoOf(channel).legend};
   if (channel == Channel::Lit && !light_name_.isEmpty()) {
-    parts << QString("light %1 turned %2°").arg(light_name_).arg(std::lround(state_.yaw_rad * 180 / kPi));
+    parts << lightWords(light_name_, state_.yaw_rad);
   }
   if (state_.look_through && capture_) {
     const View& view = capture_->views[state_.look_through->value];
@@ -339,7 +343,7 @@ QString SplatView::title() const {
     parts << "free camera";
   }
   if (!caption_.isEmpty()) parts << caption_;
-  if (state_.exposure_stops != 0) parts << QString::asprintf("exposure %+.1f stops", state_.exposure_stops);
+  if (state_.exposure_stops != 0) parts << QString::asprintf("exposure %+.2f stops", state_.exposure_stops);
   return parts.join(" · ");
 }
 

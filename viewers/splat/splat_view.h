@@ -132,4 +132,7 @@ class SplatView final : public PictureCanvas {
 // Middle of a cloud and the radius that holds most of it; stray Gaussians do not count.
 Bounds boundsOf(const std::vector<vec3>& positions_m);
 
+// "light dome turned 30°"
+QString lightWords(const QString& name, float yaw_rad);
+
 }  // namespace beam

@@ -68,6 +68,33 @@ TEST_F(TakeRun, NamedFramesAreTakesAndALoneOneIsNotTracked) {
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "005", 1}));
 }
 
+TEST_F(TakeRun, AFrameOfASolvedTakeStaysInItWhereThatIsWanted) {
+  house_.newProject();
+  countsOf(framesOf({0, 1, 2, 3}));
+  RunRequest third = framesOf({3});
+  third.keeps_takes = true;
+  EXPECT_EQ(countsOf(third), Counts{});
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "003", 1}));
+  RunRequest beyond = framesOf({3, 4});
+  beyond.keeps_takes = true;
+  countsOf(beyond);
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "003", 1}, SavedTake{"003", "004", 1}));
+  EXPECT_EQ(countsOf(framesOf({2})).at("surface.fit"), 1) << "without the wish it is fitted alone";
+}
+
+TEST_F(TakeRun, AFrameIsFittedAloneWhereWhatItBuildsOnIsNotSolved) {
+  house_.newProject();
+  countsOf(framesOf({0, 1, 2, 3}));
+  Project changed = house_.open();
+  changed.set("surface.iterations", FieldValue(12));
+  changed.save();
+  RunRequest third = framesOf({3});
+  third.keeps_takes = true;
+  const Counts counts = countsOf(third);
+  EXPECT_EQ(counts.at("surface.fit"), 1);
+  EXPECT_FALSE(counts.contains("track.pose"));
+}
+
 TEST_F(TakeRun, EveryKthFrameIsATakeWithAStride) {
   house_.newProject();
   const Counts counts = countsOf(framesOf({}, 2));
