@@ -96,7 +96,11 @@ void LogPanel::drain() {
     std::lock_guard lock(mutex_);
     records.swap(waiting_);
   }
-  for (const LogRecord& record : records) add(record.level, QString::fromStdString(record.text));
+  for (const LogRecord& record : records) {
+    const QString text = QString::fromStdString(record.text);
+    add(record.level, text);
+    if (record.level == LogLevel::Warning) Q_EMIT warned(text);
+  }
 }
 
 }  // namespace beam

@@ -21,6 +21,9 @@ class LogPanel final : public QPlainTextEdit {
   ~LogPanel() override;
   void add(LogLevel level, const QString& text);
 
+ Q_SIGNALS:
+  void warned(const QString& text);  // by the program's own log, from any thread
+
  protected:
   void showEvent(QShowEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;

@@ -393,6 +393,15 @@ void MainWindow::recallTimes() {
   }
 }
 
+void MainWindow::unsay(const QStringList& titles) {
+  if (titles.contains(message_->title())) message_->hide();
+}
+
+void MainWindow::tellOfFault(const QString& what) {
+  say("Something went wrong in the program",
+      what + " What is finished is on disk; save the settings and start the program anew.");
+}
+
 void MainWindow::say(const QString& title, const QString& text, QAction* remedy) {
   message_->show(MessagePanel::Kind::Error, title, text, remedy);
   log_->add(LogLevel::Error, title + ": " + text);

@@ -69,6 +69,8 @@ class MainWindow final : public QMainWindow {
   // Colours and text size, of the whole program; as chosen last.
   void chooseLook(Theme theme, int text_percent);
   void recallLook();
+  // A fault of the program that it survived.
+  void tellOfFault(const QString& what);
   // Whether a person is asked before a run is left by closing; yes unless told otherwise.
   void setAsksBeforeClosing(bool asks) { asks_before_closing_ = asks; }
 
@@ -154,6 +156,7 @@ class MainWindow final : public QMainWindow {
   void openLight();
   void chooseCaptureLight();
   bool takeOverSettings(const QString& what_waits);
+  bool settingsMayGo();
   void saveSettings();
   void saveAs();
   void locateCapture();
@@ -204,6 +207,8 @@ class MainWindow final : public QMainWindow {
   void showStatus();
   // `remedy`: a command that helps.
   void say(const QString& title, const QString& text, QAction* remedy = nullptr);
+  // What it said is mended.
+  void unsay(const QStringList& titles);
   void warn(const QString& text);
   Problem problemOf(Problem::Kind kind, const QString& text) const;
   void showProblems();

@@ -30,6 +30,9 @@ namespace beam {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char *kNotSaved = "The settings were not saved",
+                     *kPictureNotSaved = "The picture was not saved";
+
 bool isPanorama(const fs::path& path) { return path.extension() == ".exr" || path.extension() == ".hdr"; }
 
 }  // namespace
@@ -40,9 +43,10 @@ void MainWindow::open(const fs::path& path, const fs::path& project) {
     return say("Nothing to light yet", "Open a capture or a project first, then the panorama.");
   }
   if (const QString why = refusalToOpen(); !why.isEmpty()) return say("Cannot open another project now", why);
-  if (!takeOverSettings("Another project was not opened")) return;
+  if (!takeOverSettings("Another project was not opened") || !settingsMayGo()) return;
   rememberProject();
-  model_.open(path, project);
+  // Whole, and without a slash at its end: the list of recent projects holds for any folder.
+  model_.open(fs::absolute(path / "").lexically_normal().parent_path(), project);
 }
 
 void MainWindow::newProject() {
@@ -99,12 +103,32 @@ bool MainWindow::takeOverSettings(const QString& what_waits) {
   const std::optional<QString> trouble = settings_->takeOver();
   if (!trouble) return true;
   inspector_->setCurrentWidget(settings_);
-  say(what_waits, *trouble);
+  say(what_waits, *trouble + " Esc in the field takes back what was typed.");
   return false;
 }
 
+// Settings of a project on disk are written; those that are nowhere on disk are asked for.
+bool MainWindow::settingsMayGo() {
+  if (!asks_before_closing_ || !model_.isOpen() || !model_.editsUnsaved()) return true;
+  if (model_.onDisk() && model_.save()) return true;
+  QMessageBox question(QMessageBox::Question, "Settings are not saved",
+                       QString("Settings of \"%1\" were changed and are not on disk.")
+                           .arg(QString::fromStdString(model_.project().name())),
+                       QMessageBox::NoButton, this);
+  question.setObjectName("unsaved_question");
+  QPushButton* save = question.addButton("Save", QMessageBox::AcceptRole);
+  QPushButton* discard = question.addButton("Discard the changes", QMessageBox::DestructiveRole);
+  question.setDefaultButton(save);
+  question.setEscapeButton(question.addButton(QMessageBox::Cancel));
+  question.exec();
+  if (question.clickedButton() == save) return model_.save();
+  return question.clickedButton() == discard;
+}
+
 void MainWindow::saveSettings() {
-  if (takeOverSettings("The settings were not saved") && model_.save()) reading_->setText("Settings saved");
+  if (!takeOverSettings(kNotSaved) || !model_.save()) return;
+  reading_->setText("Settings saved");
+  unsay({kNotSaved, kProjectNotSaved});
 }
 
 void MainWindow::saveAs() {
@@ -177,8 +201,9 @@ void MainWindow::savePicture() {
   const QString file = askPictureFile(this, memory_, proposed);
   if (file.isEmpty()) return;
   if (!viewPicture().save(file, "PNG"))
-    return say("The picture was not saved", file + " cannot be written; choose another folder.");
+    return say(kPictureNotSaved, file + " cannot be written; choose another folder.");
   reading_->setText("Saved " + file);
+  unsay({kPictureNotSaved});
 }
 
 QImage MainWindow::viewPicture() {
@@ -194,7 +219,7 @@ QImage MainWindow::viewPicture() {
 }
 
 void MainWindow::closeProject() {
-  if (!takeOverSettings("The project was not closed")) return;
+  if (!takeOverSettings("The project was not closed") || !settingsMayGo()) return;
   rememberProject();
   model_.close();
 }
@@ -218,6 +243,7 @@ void MainWindow::showCaptureLost() {
 // What would be lost by closing is asked for; finished steps never are.
 bool MainWindow::mayClose() {
   if (asks_before_closing_ && !takeOverSettings("The window was not closed")) return false;
+  if (!settingsMayGo()) return false;
   if (!asks_before_closing_ || !job_.busy()) return true;
   QMessageBox question(
       QMessageBox::Question, "A run is going on",
@@ -246,7 +272,10 @@ void MainWindow::showOpened() {
   resetViews();
   problems_.clear();
   log_->add(LogLevel::Info, "Opened " + QString::fromStdString(project.folder().string()));
-  if (std::exchange(quick_first_, false) && !Project::isProject(project.folder())) model_.setPreset("draft");
+  if (std::exchange(quick_first_, false) && !Project::isProject(project.folder())) {
+    model_.setPreset("draft");
+    model_.countAsUnedited();
+  }
   if (model_.captureLost()) {
     showCaptureLost();
   } else {
@@ -259,7 +288,7 @@ void MainWindow::showOpened() {
     lights_.reset(project.environmentFile().value_or(fs::path()));
   } catch (const Error& e) {
     lights_.reset({});
-    say("The panorama is gone", QString::fromStdString(e.what()));
+    say("The panorama is gone", QString::fromStdString(e.what()), commands_.action("capture_light"));
   }
   showTitle();
   showStatus();

@@ -170,6 +170,11 @@ void MainWindow::showFinished(const JobFinished& outcome) {
   if (!notes.isEmpty() && !outcome.at_rest)
     message_->show(MessagePanel::Kind::Notice, "Left out", notes.join("\n"));
   settings_->setRunning(false);
+  // Else what failed for the want of it would speak of pictures.
+  if (!model_.captureLost() && !model_.project().captureIsThere()) {
+    model_.setCaptureThere(false);
+    showCaptureLost();
+  }
   model_.endRun();
   showSplats();
   project_panel_->refreshScores();

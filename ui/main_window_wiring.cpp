@@ -82,6 +82,7 @@ void MainWindow::connectModel() {
 
 void MainWindow::connectWatch() {
   connect(&watch_, &CaptureWatch::lost, this, [this] {
+    if (model_.captureLost()) return;
     model_.setCaptureThere(false);
     showCaptureLost();
   });
@@ -188,7 +189,11 @@ void MainWindow::connectJob() {
         QString::fromStdString(failure.message));
     model_.refresh();
   });
-  connect(&job_, &JobBridge::warned, this, &MainWindow::warn);
+  const auto note = [this](const QString& text) { problems_.add(problemOf(Problem::Kind::Warning, text)); };
+  connect(&job_, &JobBridge::warned, this, note);  // the log has it from where it was said
+  connect(log_, &LogPanel::warned, this, [this, note](const QString& text) {
+    if (!job_.busy()) note(text);  // a run tells of its own
+  });
   connect(&job_, &JobBridge::waiting, this, [this](const JobWaiting& waiting) {
     run_bar_->showWaiting(QString("waits for %1, which %2 computes")
                               .arg(waiting.ref.frame

@@ -116,6 +116,12 @@ void ProjectModel::open(const fs::path& path, const fs::path& place) {
       }
       result->project =
           looksLikeProject(path) ? Project::open(path, setup) : projectOfCapture(path, place, setup);
+      try {
+        result->project->fields();  // refuses settings that no stage takes
+      } catch (const Error&) {
+        result->project.reset();
+        throw;
+      }
       if (!result->project->captureIsThere()) result->project->lookWithoutCapture();
       result->capture = std::make_shared<const CaptureSet>(result->project->capture());
     } catch (const std::exception& e) {  // the border of this thread: said in the window
@@ -148,7 +154,9 @@ void ProjectModel::adopt(const std::shared_ptr<Opened>& result) {
   capture_ = result->capture;
   ready_ = false;
   cache_.setSource([project = *project_](FrameIndex frame) { return valuesOf(project, frame, {}); }, {});
-  unsaved_ = !Project::isProject(project_->folder());
+  on_disk_ = Project::isProject(project_->folder());
+  unsaved_ = !on_disk_;
+  edited_ = false;
   Q_EMIT opened();
   refresh();
   showFrame();
@@ -257,8 +265,9 @@ void ProjectModel::setFrame(FrameIndex frame) {
 
 void ProjectModel::edited() {
   unsaved_ = true;
+  edited_ = true;
   // A project that is not on disk yet stays in memory until it is run or saved.
-  if (Project::isProject(project_->folder()) && !project_->readOnly()) autosave_.start();
+  if (on_disk_ && !project_->readOnly()) autosave_.start();
   Q_EMIT settingsChanged();
   refresh();
 }
@@ -293,13 +302,22 @@ void ProjectModel::setEnvironment(const fs::path& file) {
 
 bool ProjectModel::save() {
   try {
+    if (on_disk_ && !Project::isProject(project_->folder())) {
+      throw Error(
+          Error::Kind::Storage,
+          fmt::format("\"{}\" is not there any more: put it back, then save again. No second one is made "
+                      "in its place.",
+                      project_->folder().string()));
+    }
     project_->save();
+    on_disk_ = true;
     unsaved_ = false;
+    edited_ = false;
     autosave_.stop();
     Q_EMIT settingsChanged();
     return true;
   } catch (const Error& e) {
-    Q_EMIT failed("The project was not saved", QString::fromStdString(e.what()));
+    Q_EMIT failed(kProjectNotSaved, QString::fromStdString(e.what()));
     return false;
   }
 }

@@ -21,6 +21,9 @@ struct HeldValues {
   FrameValues values;
 };
 
+// Title of failed() when save() fails.
+inline constexpr const char* kProjectNotSaved = "The project was not saved";
+
 class ProjectModel final : public QObject {
   Q_OBJECT
 
@@ -62,9 +65,14 @@ class ProjectModel final : public QObject {
   void reset(const std::string& key);
   void setPreset(const std::string& name);
   void setEnvironment(const std::filesystem::path& file);
-  // False, and failed(), when it cannot be written.
+  // False, and failed(), when it cannot be written; also when its folder was on disk and is gone.
   bool save();
   bool unsaved() const { return unsaved_; }
+  // Unsaved, and somebody changed something: it would be missed.
+  bool editsUnsaved() const { return unsaved_ && edited_; }
+  void countAsUnedited() { edited_ = false; }
+  // It was on disk while it is open, wherever its folder is now.
+  bool onDisk() const { return on_disk_; }
 
   // Looks at the disk again: states of the whole take, then the frame's values where they changed.
   // `pictures`: also whether the capture's pictures are still the same, which takes longer.
@@ -127,6 +135,7 @@ class ProjectModel final : public QObject {
   std::optional<FrameIndex> values_of_;  // the frame they were announced for
   std::vector<FrameIndex> prefetch_;
   QString told_error_;
+  bool on_disk_ = false, edited_ = false;
   bool opening_ = false, unsaved_ = false, ready_ = false, passing_ = false;
   bool capture_there_ = true;
   bool start_open_ = false;    // the frame to begin with is not chosen yet

@@ -204,7 +204,9 @@ void ProjectPanel::refreshFacts() {
   }
   if (project.readOnly() && Project::isProject(project.folder()))
     lines << "The project is read-only: look, do not run";
-  if (!Project::isProject(project.folder()))
+  if (model_.onDisk() && !Project::isProject(project.folder()))
+    lines << "The folder of the project is gone from where it was";
+  if (!model_.onDisk())
     lines << "Not on disk yet; the first run or Save settings makes " +
                  QString::fromStdString(project.folder().filename().string());
   facts_->setText(lines.join("\n"));

@@ -4,6 +4,8 @@
 #include <QMessageBox>
 
 #include <cstdio>
+#include <string>
+#include <utility>
 
 #include "app/gui/errand.h"
 #include "app/gui/widget_map.h"
@@ -16,6 +18,30 @@
 
 namespace {
 
+// What a handler of an event throws would end the process; it is said, and the window goes on.
+class StudioApplication final : public QApplication {
+ public:
+  using QApplication::QApplication;
+  void setWindow(beam::MainWindow* window) { window_ = window; }
+  bool notify(QObject* receiver, QEvent* event) override {
+    try {
+      return QApplication::notify(receiver, event);
+    } catch (const std::exception& e) {
+      if (!window_) throw;
+      // One that comes back with every picture is said once.
+      if (std::exchange(told_, e.what()) != e.what()) {
+        std::fprintf(stderr, "error: %s\n", e.what());
+        window_->tellOfFault(e.what());
+      }
+      return true;
+    }
+  }
+
+ private:
+  beam::MainWindow* window_ = nullptr;
+  std::string told_;
+};
+
 constexpr int kSampleFrames = 4;  // enough to play, and to see the tracking
 
 // Without a picture to take there is a person before the screen; say it in a window, too.
@@ -25,7 +51,7 @@ int report(const beam::Error& error, bool person) {
   return beam::exitCode(error.kind());
 }
 
-int runStudio(QApplication& application) {
+int runStudio(StudioApplication& application) {
   beam::StudioArguments arguments;
   try {
     arguments = beam::parseArguments(application);
@@ -57,7 +83,10 @@ int runStudio(QApplication& application) {
     window.show();
     const beam::Errand errand(window, arguments);
     const auto map = beam::widgetMapWanted();
-    return QApplication::exec();
+    application.setWindow(&window);
+    const int code = QApplication::exec();
+    application.setWindow(nullptr);
+    return code;
   } catch (const beam::Error& e) {
     return report(e, person);
   }
@@ -78,7 +107,7 @@ int main(int argc, char** argv) {
   surviveWithoutDisplay();
   QSurfaceFormat::setDefaultFormat(beam::surfaceFormat());
   QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
-  QApplication application(argc, argv);
+  StudioApplication application(argc, argv);
   QApplication::setOrganizationName("BEAM Studio");
   QApplication::setApplicationName("beam-studio");
   QApplication::setApplicationVersion(beam::versionText());

@@ -120,6 +120,12 @@ FileReference moved(const FileReference& reference, const fs::path& from, const 
 void copyChecked(const Project& from, const fs::path& source, const fs::path& to, bool with_results,
                  Progress& progress) {
   checkTarget(source, to);
+  if (from.captureIsThere() && lies(to, plain(from.captureFolder()))) {
+    throw Error(
+        Error::Kind::Usage,
+        fmt::format("\"{}\" lies in the capture, into which nothing is written; choose a folder beside it",
+                    to.string()));
+  }
   fs::create_directories(to.parent_path());
   const fs::path half = to.parent_path() / fmt::format(".{}.{}.copy", to.filename().string(), ::getpid());
   fs::remove_all(half);

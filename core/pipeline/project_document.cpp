@@ -46,8 +46,15 @@ void readCapture(const Json& j, ProjectDocument& document) {
 
 void readTakes(const Json& j, ProjectDocument& document) {
   for (const Json& take : j) {
-    document.takes.push_back({take.at("first").get<std::string>(), take.at("last").get<std::string>(),
-                              take.at("step").get<int>(), take.value("lead", 0)});
+    const SavedTake read{take.at("first").get<std::string>(), take.at("last").get<std::string>(),
+                         take.at("step").get<int>(), take.value("lead", 0)};
+    if (read.step < 1 || read.lead < 0) {
+      throw Error(
+          Error::Kind::Data,
+          fmt::format("take {} to {}: expected a step of 1 or more and a lead of 0 or more, found {} and {}",
+                      read.first, read.last, read.step, read.lead));
+    }
+    document.takes.push_back(read);
   }
 }
 

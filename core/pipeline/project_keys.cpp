@@ -213,7 +213,12 @@ std::string Project::blockedReason(std::string_view stage) const {
     const std::vector<Reads>& reads = setup_->stages.step(id).reads;
     return std::find(reads.begin(), reads.end(), Reads::Environment) != reads.end();
   });
-  if (!needs_environment || environmentFile()) return {};
+  if (!needs_environment) return {};
+  try {
+    if (environmentFile()) return {};
+  } catch (const Error& gone) {
+    return gone.what();
+  }
   return fmt::format(
       "{} needs a panorama of the light (.exr or .hdr, latitude-longitude), which the capture does not have: "
       "give one with --environment FILE, or in the studio by File > Light of the capture",

@@ -93,6 +93,7 @@ void arrangeTakes(Project& project, const RunRequest& request) {
 
 RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
   project.requireCapture();
+  project.environmentFile();  // one that was named and is gone ends the run: nothing is left out in silence
   const StageRegistry& stages = project.setup().stages;
   if (request.every < 1)
     throw Error(Error::Kind::Usage,

@@ -152,6 +152,89 @@ TEST_F(LostAndFound, AProjectWithProblemsCloses) {
   EXPECT_TRUE(open(folder / "capture.beam"));
 }
 
+TEST_F(LostAndFound, ASettingThatNoStageTakesIsSaidLikeABrokenProject) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  window.commands().action("close_project")->trigger();
+  std::string text = readTextFile(folder / "capture.beam" / "project.json");
+  const std::size_t at = text.find("\"settings\": {}");
+  ASSERT_NE(at, std::string::npos) << text;
+  text.replace(at, 14, "\"settings\": {\"surface.steps\": \"abc\"}");
+  writeFileAtomically(folder / "capture.beam" / "project.json", text);
+  window.open(folder / "capture.beam");
+  ASSERT_TRUE(waitFor([&] { return window.message().isVisible(); }));
+  EXPECT_FALSE(window.model().isOpen());
+  EXPECT_TRUE(enabled("earlier_versions")) << window.message().text().toStdString();
+}
+
+TEST_F(LostAndFound, SolvedResultsOpenWithoutThePanoramaWhichCanBeNamed) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  writeFileAtomically(folder / "sky.exr", "light");
+  window.model().setEnvironment(folder / "sky.exr");
+  ASSERT_TRUE(window.model().save());
+  fs::remove(folder / "sky.exr");
+  window.open(folder / "capture.beam");
+  ASSERT_TRUE(waitFor([&] { return window.message().isVisible() && window.settled(); }));
+  EXPECT_TRUE(window.model().values().cloud) << "what is solved can be looked at";
+  EXPECT_TRUE(enabled("capture_light"));
+}
+
+TEST_F(LostAndFound, AProjectThatIsGoneIsNotMadeASecondTime) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  fs::rename(folder / "capture.beam", folder / "gone.beam");
+  changeSurface();
+  EXPECT_FALSE(window.model().save());
+  EXPECT_TRUE(window.message().text().contains("not there any more"))
+      << window.message().text().toStdString();
+  EXPECT_FALSE(fs::exists(folder / "capture.beam"));
+  window.run();
+  EXPECT_FALSE(window.job().busy());
+}
+
+TEST_F(LostAndFound, ARunWhoseCaptureGoesEndsWithThatWord) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  changeSurface();
+  testing::holdStandInRuns(true);
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return window.job().busy(); }));
+  fs::rename(folder / "capture", folder / "elsewhere");
+  testing::holdStandInRuns(false);
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy() && window.model().captureLost(); }));
+  EXPECT_EQ(window.message().title(), "The capture is not where it was");
+}
+
+TEST_F(LostAndFound, SettingsThatAreNowhereOnDiskAreAskedFor) {
+  fs::remove_all(folder / "capture.beam");
+  ASSERT_TRUE(open(folder / "capture"));
+  window.setAsksBeforeClosing(true);
+  changeSurface();
+  const auto answer = [&](const QString& words) {
+    QTimer::singleShot(100, &window, [words] {
+      auto* question = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+      ASSERT_NE(question, nullptr);
+      for (QAbstractButton* button : question->buttons())
+        if (button->text().remove("&") == words) return button->click();
+    });
+    window.commands().action("close_project")->trigger();
+  };
+  answer("Cancel");
+  EXPECT_TRUE(window.model().isOpen());
+  EXPECT_FALSE(fs::exists(folder / "capture.beam"));
+  answer("Save");
+  EXPECT_FALSE(window.model().isOpen());
+  EXPECT_TRUE(fs::exists(folder / "capture.beam" / "project.json"));
+}
+
+TEST_F(LostAndFound, AWordOfAFailureGoesWhenItIsMended) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  fs::rename(folder / "capture.beam", folder / "gone.beam");
+  changeSurface();
+  EXPECT_FALSE(window.model().save());
+  ASSERT_TRUE(window.message().isVisible());
+  fs::rename(folder / "gone.beam", folder / "capture.beam");
+  window.commands().action("save_settings")->trigger();
+  EXPECT_FALSE(window.message().isVisible()) << window.message().text().toStdString();
+}
+
 TEST_F(LostAndFound, ABrokenProjectOffersItsEarlierVersionsInWords) {
   writeFileAtomically(folder / "capture.beam" / "project.json", "{ half");
   window.open(folder / "capture.beam");

@@ -51,6 +51,14 @@ TEST(CopyProject, KeepsTheAgeOfResultsAndWhyAFrameFailed) {
   EXPECT_EQ(to.failureOf("surface.fit", FrameIndex{2}), "too dark");
 }
 
+TEST(CopyProject, IsNotMadeInTheCapture) {
+  FakeHouse house;
+  const Project from = house.newProject();
+  Progress progress;
+  EXPECT_THROW(copyProject(from, house.root() / "capture" / "q.beam", true, progress), Error);
+  EXPECT_FALSE(fs::exists(house.root() / "capture" / "q.beam"));
+}
+
 TEST(CopyProject, WithoutResultsIsTheSettingsAlone) {
   FakeHouse house;
   Project from = house.newProject();

@@ -68,6 +68,22 @@ TEST(Run, TakesOnlyTheFramesAndStagesItIsAskedFor) {
   EXPECT_EQ(house.finish(house.open(), {{}, "", "nonsense"}).kind, Error::Kind::Usage);
 }
 
+TEST(Run, WithANamedPanoramaThatIsGoneItDoesNotStart) {
+  FakeHouse house;
+  Project project = house.newProject();
+  house.finish(project);
+  std::filesystem::copy_file(house.root() / "light.hdr", house.root() / "other.hdr");
+  project.setEnvironment(house.root() / "other.hdr");
+  project.save();
+  std::filesystem::remove(house.root() / "other.hdr");
+  EXPECT_EQ(project.stageState("surface", FrameIndex{0}), StepState::Done);
+  EXPECT_EQ(project.stageState("materials", FrameIndex{0}), StepState::Blocked);
+  EXPECT_THAT(project.blockedReason("materials"), HasSubstr("other.hdr"));
+  const JobFinished finished = house.finish(project);
+  EXPECT_EQ(finished.outcome, JobOutcome::Failed);
+  EXPECT_THAT(finished.message, HasSubstr("panorama"));
+}
+
 TEST(Run, WithoutAPanoramaItStopsAfterSurfaceAndSaysWhatIsNeeded) {
   FakeHouse house;
   house.has_panorama = false;
