@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kBackdrop[3] = {27 / 255.0f, 28 / 255.0f, 30 / 255.0f};
 constexpr double kMargin_px = 10, kGap_px = 6;
+constexpr double kLeastColumn_letters = 24, kColumnShare = 0.36;  // of the width
 
 }  // namespace
 
@@ -78,16 +79,21 @@ void PictureCanvas::setBadge(const QString& badge) {
   update();
 }
 
+double PictureCanvas::columnWidth() const {
+  const double least = kLeastColumn_letters * fontMetrics().averageCharWidth();
+  return std::min(width() - 2 * kMargin_px, std::max(least, kColumnShare * width()));
+}
+
 void PictureCanvas::paintWords(QPainter& painter, const QString& title, const QString& foot) {
   words_.title = paintLabel(painter, {kMargin_px, kMargin_px}, Qt::AlignLeft | Qt::AlignTop, title,
-                            {.width_px = width() - 2 * kMargin_px});
+                            {.width_px = columnWidth()});
   paintBadge(painter, words_.title.bottom());
   paintFoot(painter, foot);
 }
 
 void PictureCanvas::paintBadge(QPainter& painter, double top_px) {
   words_.badge = paintLabel(painter, {kMargin_px, top_px + kGap_px}, Qt::AlignLeft | Qt::AlignTop, badge_,
-                            {.width_px = width() - 2 * kMargin_px, .tone = LabelTone::Warning});
+                            {.width_px = columnWidth(), .tone = LabelTone::Warning});
 }
 
 void PictureCanvas::paintFoot(QPainter& painter, const QString& foot) {

@@ -52,6 +52,8 @@ class PictureCanvas : public QOpenGLWidget {
   bool hasPicture(int layer) const { return pictures_[layer] != nullptr; }
   virtual PictureLayout pictureLayout() const = 0;
   virtual void paintOver(QPainter& painter) = 0;
+  // Words at the left edge are no wider: what is looked at stands in the middle.
+  double columnWidth() const;
   // The title in the upper left corner with the badge under it, and a note in the lower left one.
   void paintWords(QPainter& painter, const QString& title, const QString& foot);
   // The badge alone, for views that place their titles themselves; `top_px` is where they end.

@@ -355,7 +355,7 @@ void ImageView::paintTitles(QPainter& painter) {
   const int side = peek_ || !sides_[0].picture ? 1 : 0;
   const QString title = apart() && !peek_ ? "|A − B| · " + pairText() + "\n" + verdict() : sideText(side);
   titleIs(paintLabel(painter, {kBeside_px, kBeside_px}, Qt::AlignLeft | Qt::AlignTop, title,
-                     {.width_px = width() - 2 * kBeside_px}));
+                     {.width_px = columnWidth()}));
   paintBadge(painter, words().title.bottom());
 }
 
