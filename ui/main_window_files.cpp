@@ -140,7 +140,11 @@ void MainWindow::saveAs() {
       [from = model_.project(), to = fs::path(folder.toStdString())](Progress& progress) {
         copyProject(from, to, true, progress);
       },
-      [this, folder] { open(folder.toStdString()); });
+      [this, folder] {
+        const std::string id = readProjectDocument(folder.toStdString()).id;
+        memory_.keepFrame(QString::fromStdString(id), model_.frameName());
+        open(folder.toStdString());
+      });
 }
 
 void MainWindow::locateCapture() {
