@@ -32,7 +32,8 @@ Progress Progress::part(double share, std::string label) {
   return Progress(root_, begin, end, label.empty() ? label_ : std::move(label));
 }
 
-void Progress::expect(std::int64_t steps) {
+void Progress::expect(std::int64_t steps, std::string unit) {
+  unit_ = std::move(unit);
   total_ = steps;
   done_ = 0;
 }
@@ -56,7 +57,7 @@ void Progress::report(bool always) const {
   root_->last = now;
   const double inside =
       total_ > 0 ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)) : 0.0;
-  root_->listener({begin_ + (end_ - begin_) * inside, label_, done_, total_});
+  root_->listener({begin_ + (end_ - begin_) * inside, label_, done_, total_, unit_});
 }
 
 }  // namespace beam

@@ -16,6 +16,7 @@ struct ProgressReport {
   std::string label;       // what is being done, deepest part that has a label
   std::int64_t done = 0;   // steps of that part
   std::int64_t total = 0;  // 0: not known
+  std::string unit = {};   // what a step is, in the plural: "iterations"; empty: nothing a person knows
 };
 
 class Progress {
@@ -32,10 +33,10 @@ class Progress {
   // A child that covers the next `share` (of this part's whole, [0, 1]).
   Progress part(double share, std::string label);
 
-  void expect(std::int64_t steps);    // steps of this part that follow
-  void step(std::int64_t count = 1);  // throws Cancelled when a stop was requested
-  void check() const;                 // throws Cancelled likewise, reports nothing
-  bool stopRequested() const;         // for worker pieces, which must return early instead of throwing
+  void expect(std::int64_t steps, std::string unit = {});  // steps of this part that follow
+  void step(std::int64_t count = 1);                       // throws Cancelled when a stop was requested
+  void check() const;                                      // throws Cancelled likewise, reports nothing
+  bool stopRequested() const;  // for worker pieces, which must return early instead of throwing
 
  private:
   struct Root;
@@ -46,7 +47,7 @@ class Progress {
   double begin_ = 0, end_ = 1;  // of the whole job
   double used_ = 0;             // share handed to children so far
   std::int64_t done_ = 0, total_ = 0;
-  std::string label_;
+  std::string label_, unit_;
 };
 
 }  // namespace beam

@@ -57,7 +57,7 @@ void describe(Fields& f, ExtractMeshOptions& o) {
 Mesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> cameras,
                  const ExtractMeshOptions& options, ComputeDevice& device, Progress& progress) {
   Progress depth = progress.part(0.5, "depth of the views");
-  depth.expect(static_cast<std::int64_t>(cameras.size()));
+  depth.expect(static_cast<std::int64_t>(cameras.size()), "cameras");
   const GaussianBuffers buffers = toBuffers(cloud);
   std::vector<DepthView> views;
   std::unique_ptr<Rasterizer> raster;

@@ -109,7 +109,7 @@ ShBlock fitDescent(std::span<const MaterialMaps> maps, const GaussianCloud& clou
   std::unique_ptr<Rasterizer> rasterizer;
   RasterImages images, upstream;
   const RandomStream choice(1, 0x666974, static_cast<int>(options.kind));
-  progress.expect(options.iterations);
+  progress.expect(options.iterations, "iterations");
   for (int step = 1; step <= options.iterations; ++step) {
     progress.step();
     const MaterialMaps& m = maps[choice.below(step, maps.size())];

@@ -122,7 +122,7 @@ std::vector<ViewEquations> collect(const MapSource& maps, const GaussianCloud& c
   std::unique_ptr<Rasterizer> rasterizer;
   std::vector<ViewEquations> views;
   int stride = 0;  // not known before a view has shown something
-  progress.expect(static_cast<std::int64_t>(maps.views));
+  progress.expect(static_cast<std::int64_t>(maps.views), "photographs");
   for (std::size_t v = 0; v < maps.views; ++v) {
     progress.step();
     const MaterialMaps m = maps.read(v);
@@ -419,7 +419,7 @@ void forAll(std::size_t count, Body&& body) {
 // step away from x.
 void descend(const NormalEquations& a, MaterialCoefficients& x, MaterialCoefficients r, int iterations,
              Progress& progress) {
-  progress.expect(iterations);
+  progress.expect(iterations, "iterations");
   const std::vector<vec4>& diagonal = a.diagonal();
   MaterialCoefficients z(r.size()), p;
   const auto precondition = [&] {

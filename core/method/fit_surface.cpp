@@ -88,7 +88,7 @@ class SurfaceTrainer {
   void takeFilterOut() { model_.takeFilterOut(loss_.cameras(), static_cast<float>(options_.filter)); }
 
   void run(int begin, int end, Progress& progress, const CloudPreview& preview) {
-    progress.expect(end - begin);
+    progress.expect(end - begin, "iterations");
     TimedPreview shown(preview);
     const int first_cap = static_cast<int>(model_.size());
     for (int step = begin; step < end; ++step) {

@@ -40,7 +40,7 @@ class SkinFollower {
   }
 
   FollowedSkin run(int begin, int end, Progress& progress, const CloudPreview& preview) {
-    progress.expect(end - begin);
+    progress.expect(end - begin, "iterations");
     TimedPreview shown(preview);
     for (int step = begin; step < end; ++step) {
       progress.step();

@@ -105,7 +105,7 @@ ViewScore scoreOf(const FrameView& whole, const TrainingView& crop, const Planes
 std::vector<ViewScore> scoreViews(std::span<const FrameView> views, bool held_out, const GaussianCloud& cloud,
                                   ComputeDevice& device, Progress& progress) {
   if (views.empty()) return {};
-  progress.expect(static_cast<std::int64_t>(views.size()));
+  progress.expect(static_cast<std::int64_t>(views.size()), "photographs");
   const std::vector<TrainingView> crops = cropToMasks(views);
   GBufferRenderer renderer(device);
   std::vector<ViewScore> scores(crops.size());

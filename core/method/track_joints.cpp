@@ -152,7 +152,7 @@ class JointTracker {
   }
 
   TrackedJoints run(Progress& progress, const CloudPreview& preview) {
-    progress.expect(options_.iterations + options_.recolor_iterations);
+    progress.expect(options_.iterations + options_.recolor_iterations, "iterations");
     TrackedJoints result;
     for (int level = levels_; level >= 0; --level) {
       progress.check();

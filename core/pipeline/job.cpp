@@ -252,9 +252,10 @@ StepKind Job::kindOf(const std::string& step, std::optional<Turn> turn) const {
 }
 
 void Job::expect(const std::string& step, std::optional<Turn> turn) {
-  const double weight = project_.setup().stages.step(step).weight;
-  weight_total_ += weight;
-  left_.expect(kindOf(step, turn), weight);
+  const StepKind kind = kindOf(step, turn);
+  const StepSize size = sizeOf(project_, step, kind.later);
+  weight_total_ += size.weight;
+  left_.expect(kind, size);
 }
 
 void Job::drop(const std::string& step, std::optional<Turn> turn) {
@@ -308,7 +309,7 @@ void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const D
   logInfo("{}{} done in {:.1f} s", ref.step, ref.frame ? ", frame " + ref.frame_name : std::string(),
           seconds);
   weight_done_ += weight_now_;
-  left_.finish(kindOf(ref.step, turn_), weight_now_, seconds);
+  left_.finish(kindOf(ref.step, turn_), seconds);
   last_ = ref;
   met_.reset();
   waits_told_.reset();
@@ -348,6 +349,7 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
   record.device = device_.info().title;
   record.threads = threadCount();
   record.seconds = secondsSince(step_started_);
+  record.work = project_.workOf(ref.step, record.ingredients.later);
   record.peak_memory_bytes = peakMemoryBytes();
   record.scores = context.scores;
   std::lock_guard lock(warnings_mutex_);
@@ -397,12 +399,12 @@ void Job::reportProgress(const StepRef& ref, const ProgressReport& report) {
   event.job_fraction = weight_total_ > 0 ? worked / weight_total_ : 0;
   event.seconds_elapsed = secondsSince(started_);
   const double in_step = secondsSince(step_started_);
-  if (const auto left = left_.left(kindOf(ref.step, turn_), report.fraction, in_step)) {
+  if (const auto left = left_.left(kindOf(ref.step, turn_), report, in_step)) {
     event.seconds_left = left->likely;
     event.seconds_left_low = left->low;
     event.seconds_left_high = left->high;
   }
-  if (report.done > 0 && in_step > 0.5) event.rate = static_cast<double>(report.done) / in_step;
+  event.rate = left_.rate();
   tell_(std::move(event));
 }
 

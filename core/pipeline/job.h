@@ -20,8 +20,8 @@
 #include "core/pipeline/project.h"
 #include "core/pipeline/run_plan.h"
 #include "core/pipeline/session_log.h"
-#include "core/pipeline/step_times.h"
 #include "core/pipeline/stop_wishes.h"
+#include "core/pipeline/time_left.h"
 
 namespace beam {
 

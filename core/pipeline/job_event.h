@@ -43,7 +43,9 @@ struct StepProgress {
   double seconds_elapsed = 0;                            // of the whole run
   double seconds_left = -1;                              // of the whole run, estimated; < 0: not known yet
   double seconds_left_low = -1, seconds_left_high = -1;  // between these it is likely to be
-  double rate = 0;                                       // report.done a second; 0: not known yet
+  double rate = 0;                                       // report.done a second, lately; 0: not known yet
+  // What the counter and the rate beside it say of the seconds left; seconds_left is never below.
+  double countedLeft() const { return rate > 0 ? static_cast<double>(report.total - report.done) / rate : 0; }
 };
 
 // Sent after the result is on disk for good: what is acknowledged here survives a kill.

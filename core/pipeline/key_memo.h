@@ -27,6 +27,7 @@ class KeyMemo {
   void clear() {
     keys.clear();
     parameters.clear();
+    works.clear();
     chains.clear();
     owners.clear();
     calibration.reset();
@@ -40,6 +41,7 @@ class KeyMemo {
 
   std::map<Place, Digest> keys;
   std::map<std::pair<std::string, bool>, std::map<std::string, std::string>> parameters;  // of step, later
+  std::map<std::pair<std::string, bool>, double> works;                                   // likewise
   std::map<std::string, std::vector<std::string>> chains;  // what of the frames before enters a step
   std::vector<Take> owners;                                // by frame
   std::optional<Digest> calibration;

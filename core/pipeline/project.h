@@ -128,6 +128,9 @@ class Project {
   void forgetKeys() const { memo_.clear(); }
   // What of the settings in force enters the key of the step: full name -> value.
   const std::map<std::string, std::string>& parametersOf(const std::string& step, bool later) const;
+  // How much there is to do by StepInfo::work with the capture and the settings in force; only ratios mean
+  // something.
+  double workOf(const std::string& step, bool later) const;
   // Whether the frame has no result yet of one of the steps. Keeps no keys: before its turn its files may
   // change.
   bool lacksAny(const std::vector<std::string>& steps, const Take& take, FrameIndex frame) const;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/base/error.h"
@@ -84,6 +85,27 @@ const std::map<std::string, std::string>& Project::parametersOf(const std::strin
     parameters[stage + "." + in_force[i].info.name] = toText(in_force[i].value);
   }
   return memo_.parameters.emplace(name, std::move(parameters)).first->second;
+}
+
+double Project::workOf(const std::string& step, bool later) const {
+  const std::pair<std::string, bool> name(step, later);
+  if (const auto known = memo_.works.find(name); known != memo_.works.end()) return known->second;
+  const auto number = [&](const std::string& setting) {
+    const FieldValue value = this->value(setting);
+    const int* whole = std::get_if<int>(&value);
+    return whole ? *whole : std::get<double>(value);
+  };
+  const StepWork& by = setup_->stages.step(step).work;
+  const std::vector<View>& views = capture().views;
+  double work = by.photographs ? static_cast<double>(views.size()) : 1;
+  if (by.pixels && !views.empty()) {
+    double pixels = 0;
+    for (const View& view : views) pixels += static_cast<double>(view.camera.width) * view.camera.height;
+    work *= pixels / static_cast<double>(views.size());
+  }
+  if (!by.downscale.empty()) work /= std::pow(number(by.downscale), 2);
+  if (const std::string& times = later ? by.later_times : by.times; !times.empty()) work *= number(times);
+  return memo_.works.emplace(name, work).first->second;
 }
 
 // Per-frame steps, in order, whose results of earlier frames enter `step`.

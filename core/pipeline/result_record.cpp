@@ -56,6 +56,7 @@ std::string toJson(const ResultRecord& r) {
   j["device"] = r.device;
   j["threads"] = r.threads;
   j["seconds"] = r.seconds;
+  if (r.work > 0) j["work"] = r.work;
   j["peak_memory_bytes"] = r.peak_memory_bytes;
   j["warnings"] = r.warnings;
   j["scores"] = r.scores;
@@ -82,6 +83,7 @@ ResultRecord parseResultRecord(std::string_view json) {
     r.device = j.at("device").get<std::string>();
     r.threads = j.at("threads").get<int>();
     r.seconds = j.at("seconds").get<double>();
+    r.work = j.value("work", 0.0);
     r.peak_memory_bytes = j.at("peak_memory_bytes").get<std::uint64_t>();
     r.warnings = j.at("warnings").get<std::vector<std::string>>();
     r.scores = j.at("scores").get<std::map<std::string, double>>();

@@ -28,6 +28,7 @@ struct ResultRecord {
   std::string device;  // and the instruction set; does not enter the key
   int threads = 0;
   double seconds = 0;
+  double work = 0;                      // Project::workOf; 0: of a version that did not tell
   std::uint64_t peak_memory_bytes = 0;  // of the process so far
   std::vector<std::string> warnings;
   std::map<std::string, double> scores;

@@ -9,7 +9,9 @@ namespace {
 
 class Estimator {
  public:
-  Estimator(const Project& project, const StepTimes& times) : project_(project), times_(times) {}
+  Estimator(const Project& project, const StepTimes& times) : project_(project), times_(times) {
+    out_.measured = !times.empty();
+  }
 
   // `owned`: nobody asked for a lead.
   void step(const std::string& id, const Take& take, FrameIndex frame, bool owned) {
@@ -20,8 +22,11 @@ class Estimator {
     if (project_.store().has(keyOf(ingredients))) return;
     ++out_.steps_missing;
     if (info.per_frame && owned) to_do_.insert(frame.value);
-    const auto seconds = times_.guess(kindOf(ingredients), info.weight);
-    if (!seconds) return;
+    const auto seconds = times_.guess(kindOf(ingredients), sizeOf(project_, id, ingredients.later));
+    if (!seconds) {
+      out_.measured = false;
+      return;
+    }
     out_.seconds_low += seconds->low;
     out_.seconds_high += seconds->high;
   }
@@ -30,7 +35,6 @@ class Estimator {
     const auto owned = [](const Turn& turn) { return !turn.lead(); };
     out_.frames_total = static_cast<int>(std::count_if(plan.turns.begin(), plan.turns.end(), owned));
     out_.frames = static_cast<int>(to_do_.size());
-    out_.measured = !times_.empty();
     return out_;
   }
 

@@ -45,6 +45,15 @@ struct Later {
   bool empty() const { return inputs.empty() && previous.empty(); }
 };
 
+// What the time of a step is about in proportion to, for guesses from other captures and settings.
+struct StepWork {
+  bool photographs = false;      // their number
+  bool pixels = false;           // those of one photograph
+  std::string downscale = "";    // setting: photographs are so many times smaller a side
+  std::string times = "";        // setting: so many times over (iterations, samples)
+  std::string later_times = "";  // the same in later frames
+};
+
 struct StepInfo {
   std::string id;           // inside its stage: "fit"; the full id is "surface.fit". Never renamed
   std::string title;        // "Fit appearance"
@@ -58,6 +67,7 @@ struct StepInfo {
   double weight = 1;  // usual share of time, for the remaining time of a run
   Frames frames = Frames::Every;
   Later later = {};
+  StepWork work = {};
 };
 
 // Whether the step is for this frame of the take.

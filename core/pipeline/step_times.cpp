@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -15,16 +17,46 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kKept = 64;       // of a kind
-constexpr double kLeastSpread = 1.15;   // two equal measurements do not make a third
-constexpr double kOtherSettings = 2.0;  // either way: iterations and sizes differ by about as much
-constexpr double kByWeight = 2.5;       // likewise of steps that were never measured
-constexpr double kRise = 1.25;          // a guess that much higher is news, less is noise
+constexpr std::size_t kKept = 64;  // of a kind
+// Factors to either side of a guess.
+constexpr double kLeastSpread = 1.15;  // two equal measurements do not make a third
+constexpr double kOtherFrames = 2.5;   // first frames for later ones, or the reverse
+constexpr double kFar = 3;             // the work differs much, or it was another step
+constexpr double kUnknownWork = 4;
+constexpr double kAlike = 1.1;        // so much more doubt is no worse
+constexpr double kMuchLighter = 0.1;  // of the weight
 
-Seconds around(double likely, double factor) { return {likely / factor, likely, likely * factor}; }
+// Time follows most of what StepInfo::work counts, not all (Gaussians, masks, caches): half of a difference,
+// as a power, is in doubt.
+double doubtOfWork(double measured, double wanted) {
+  if (measured <= 0 || wanted <= 0) return kUnknownWork;
+  const double ratio = std::max(measured, wanted) / std::min(measured, wanted);
+  return std::min(kFar, kLeastSpread * std::sqrt(ratio));
+}
 
-// Early in a step its own pace says little.
-bool paceTells(double fraction, double seconds) { return fraction > 0.02 && seconds > 0.5; }
+double doubtOf(const StepKind& measured, double its_work, const StepKind& wanted, double work) {
+  double doubt = doubtOfWork(its_work, work);
+  if (measured.settings != wanted.settings) doubt = std::max(doubt, kOtherSettings);
+  if (measured.later != wanted.later) doubt = std::max(doubt, kOtherFrames);
+  return doubt;
+}
+
+struct Told {
+  double seconds, doubt;
+};
+
+std::optional<Seconds> leastDoubted(const std::vector<Told>& all) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Told& told : all) least = std::min(least, told.doubt);
+  std::vector<double> best;
+  for (const Told& told : all) {
+    if (told.doubt <= kAlike * least) best.push_back(told.seconds);
+  }
+  if (best.empty()) return std::nullopt;
+  const double likely = median(best);
+  return Seconds{std::min(quantile(best, 0.25), likely / least), likely,
+                 std::max(quantile(best, 0.75), likely * least)};
+}
 
 }  // namespace
 
@@ -38,6 +70,10 @@ StepKind kindOf(const KeyIngredients& made) {
   return {made.step, made.later, settingsDigest(made.parameters)};
 }
 
+StepSize sizeOf(const Project& project, const std::string& step, bool later) {
+  return {project.setup().stages.step(step).weight, project.workOf(step, later)};
+}
+
 Seconds& Seconds::operator+=(const Seconds& other) {
   low += other.low, likely += other.likely, high += other.high;
   return *this;
@@ -47,57 +83,55 @@ Seconds operator*(const Seconds& s, double factor) {
   return {s.low * factor, s.likely * factor, s.high * factor};
 }
 
+Seconds around(double likely, double factor) { return {likely / factor, likely, likely * factor}; }
+
+std::optional<Seconds> WeightSum::guess(double of_weight) const {
+  if (weight <= 0 || weight < kMuchLighter * of_weight) return std::nullopt;
+  return around(of_weight * seconds / weight, kFar);
+}
+
 // --- StepTimes ---
 
-void StepTimes::add(const StepKind& kind, double weight, double seconds) {
+void StepTimes::add(const StepKind& kind, const StepSize& size, double seconds) {
   Measured& m = measured_[kind];
-  m.weight = weight;
+  m.weight = size.weight;
   m.seconds.push_back(seconds);
-  if (m.seconds.size() > kKept) m.seconds.erase(m.seconds.begin());
+  m.works.push_back(size.work);
+  if (m.seconds.size() <= kKept) return;
+  m.seconds.erase(m.seconds.begin());
+  m.works.erase(m.works.begin());
 }
 
 void StepTimes::add(const StepTimes& others) {
   for (const auto& [kind, m] : others.measured_) {
-    for (const double s : m.seconds) add(kind, m.weight, s);
+    for (std::size_t i = 0; i < m.seconds.size(); ++i) add(kind, {m.weight, m.works[i]}, m.seconds[i]);
   }
 }
 
-std::optional<Seconds> StepTimes::ofKind(const StepKind& kind) const {
-  const auto found = measured_.find(kind);
-  if (found == measured_.end()) return std::nullopt;
-  const std::vector<double>& all = found->second.seconds;
-  const double likely = median(all);
-  return Seconds{std::min(quantile(all, 0.25), likely / kLeastSpread), likely,
-                 std::max(quantile(all, 0.75), likely * kLeastSpread)};
+std::optional<Seconds> StepTimes::ofStep(const StepKind& kind, double work) const {
+  std::vector<Told> all;
+  for (const auto& [measured, m] : measured_) {
+    if (measured.step != kind.step) continue;
+    for (std::size_t i = 0; i < m.seconds.size(); ++i) {
+      const double scale = m.works[i] > 0 && work > 0 ? work / m.works[i] : 1;
+      all.push_back({scale * m.seconds[i], doubtOf(measured, m.works[i], kind, work)});
+    }
+  }
+  return leastDoubted(all);
 }
 
-std::optional<Seconds> StepTimes::ofStepIn(const std::string& step, bool later) const {
-  std::vector<double> all;
+WeightSum StepTimes::byWeight() const {
+  WeightSum sum;
   for (const auto& [kind, m] : measured_) {
-    if (kind.step == step && kind.later == later) all.push_back(median(m.seconds));
+    sum.seconds += median(m.seconds);
+    sum.weight += m.weight;
   }
-  return all.empty() ? std::nullopt : std::optional(around(median(all), kOtherSettings));
+  return sum;
 }
 
-std::optional<Seconds> StepTimes::ofStep(const StepKind& kind) const {
-  const std::optional<Seconds> same = ofStepIn(kind.step, kind.later);
-  return same ? same : ofStepIn(kind.step, !kind.later);
-}
-
-std::optional<double> StepTimes::secondsPerWeight() const {
-  double seconds = 0, weight = 0;
-  for (const auto& [kind, m] : measured_) {
-    seconds += median(m.seconds);
-    weight += m.weight;
-  }
-  return weight > 0 ? std::optional(seconds / weight) : std::nullopt;
-}
-
-std::optional<Seconds> StepTimes::guess(const StepKind& kind, double weight) const {
-  if (const auto exact = ofKind(kind)) return exact;
-  if (const auto other = ofStep(kind)) return other;
-  const std::optional<double> pace = secondsPerWeight();
-  return pace ? std::optional(around(weight * *pace, kByWeight)) : std::nullopt;
+std::optional<Seconds> StepTimes::guess(const StepKind& kind, const StepSize& size) const {
+  const std::optional<Seconds> same = ofStep(kind, size.work);
+  return same ? same : byWeight().guess(size.weight);
 }
 
 std::string toJson(const StepTimes& times) {
@@ -107,7 +141,8 @@ std::string toJson(const StepTimes& times) {
                  {"later", kind.later},
                  {"settings", kind.settings.hex()},
                  {"weight", m.weight},
-                 {"seconds", m.seconds}});
+                 {"seconds", m.seconds},
+                 {"works", m.works}});
   }
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -118,8 +153,11 @@ StepTimes parseStepTimes(std::string_view json) {
     for (const Json& j : Json::parse(json)) {
       const StepKind kind{j.at("step").get<std::string>(), j.at("later").get<bool>(),
                           parseDigest(j.at("settings").get<std::string>())};
-      for (const Json& seconds : j.at("seconds"))
-        times.add(kind, j.at("weight").get<double>(), seconds.get<double>());
+      const auto seconds = j.at("seconds").get<std::vector<double>>();
+      auto works = j.value("works", std::vector<double>());
+      works.resize(seconds.size(), 0);
+      for (std::size_t i = 0; i < seconds.size(); ++i)
+        times.add(kind, {j.at("weight").get<double>(), works[i]}, seconds[i]);
     }
     return times;
   } catch (const nlohmann::json::exception&) {
@@ -138,72 +176,9 @@ StepTimes readStepTimes(const Project& project) {
     const std::optional<ResultRecord> record = project.store().record(key);
     if (!record) continue;
     if (const auto weight = weights.find(record->ingredients.step); weight != weights.end())
-      times.add(kindOf(record->ingredients), weight->second, record->seconds);
+      times.add(kindOf(record->ingredients), {weight->second, record->work}, record->seconds);
   }
   return times;
-}
-
-// --- TimeLeft ---
-
-void TimeLeft::expect(const StepKind& kind, double weight) {
-  ToDo& to_do = to_do_[kind];
-  to_do.weight = weight;
-  ++to_do.count;
-}
-
-void TimeLeft::drop(const StepKind& kind) {
-  const auto found = to_do_.find(kind);
-  if (found != to_do_.end() && --found->second.count <= 0) to_do_.erase(found);
-}
-
-void TimeLeft::finish(const StepKind& kind, double weight, double seconds) {
-  drop(kind);
-  here_.add(kind, weight, seconds);
-}
-
-// What this run measured itself comes first; `pace`: seconds of weight 1 in the step at work.
-std::optional<Seconds> TimeLeft::guess(const StepKind& kind, double weight,
-                                       std::optional<double> pace) const {
-  if (const auto own = here_.ofKind(kind)) return own;
-  if (const auto exact = earlier_.ofKind(kind)) return exact;
-  if (const auto own = here_.ofStep(kind)) return own;
-  if (const auto other = earlier_.ofStep(kind)) return other;
-  if (const auto measured = here_.secondsPerWeight()) pace = measured;
-  if (const auto measured = earlier_.secondsPerWeight(); measured && !pace) pace = measured;
-  return pace ? std::optional(around(weight * *pace, kByWeight)) : std::nullopt;
-}
-
-std::optional<Seconds> TimeLeft::left(const StepKind& now, double fraction, double seconds_in_step) {
-  const auto at_work = to_do_.find(now);
-  if (at_work == to_do_.end()) return std::nullopt;
-  const double weight = at_work->second.weight;
-  std::optional<double> pace;
-  std::optional<Seconds> whole = guess(now, weight, pace);
-  if (paceTells(fraction, seconds_in_step)) {
-    const double projected = seconds_in_step / fraction;
-    if (weight > 0) pace = projected / weight;
-    // The further the step, the more its own pace counts.
-    Seconds own = around(projected, 1 + (kOtherSettings - 1) * (1 - fraction));
-    if (whole) {
-      own = own * fraction;
-      own += *whole * (1 - fraction);
-    }
-    whole = own;
-  }
-  if (!whole) return std::nullopt;
-  Seconds sum = *whole * (1 - fraction);
-  for (const auto& [kind, to_do] : to_do_) {
-    const int others = to_do.count - (kind == now ? 1 : 0);
-    if (others == 0) continue;
-    const std::optional<Seconds> each = guess(kind, to_do.weight, pace);
-    if (!each) return std::nullopt;
-    sum += *each * others;
-  }
-  const bool noise = told_ && sum.likely > *told_ && sum.likely < *told_ * kRise;
-  if (noise) sum.likely = *told_;
-  sum.low = std::min(sum.low, sum.likely);
-  told_ = sum.likely;
-  return sum;
 }
 
 }  // namespace beam

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long steps took, from records and from a run at work, and what follows for those that are to come. A
-// hint for people: nothing that is computed depends on it.
+// How long steps took, from records and from runs here, and what follows for steps of other sizes. A hint for
+// people: nothing that is computed depends on it.
 #pragma once
 
 #include <compare>
@@ -17,7 +17,7 @@ namespace beam {
 
 class Project;
 
-// Steps that should take equally long: first frames of takes and later ones are different work.
+// Steps that should take equally long for equal work: first frames of takes and later ones are different.
 struct StepKind {
   std::string step;  // full id
   bool later = false;
@@ -27,27 +27,44 @@ struct StepKind {
 StepKind kindOf(const KeyIngredients& made);
 Digest settingsDigest(const std::map<std::string, std::string>& parameters);
 
+// What is known of a step's time before one was ever timed.
+struct StepSize {
+  double weight = 1;  // StepInfo::weight: compares steps
+  double work = 1;    // Project::workOf: compares captures and settings; 0: not known
+};
+StepSize sizeOf(const Project& project, const std::string& step, bool later);
+
 struct Seconds {
   double low = 0, likely = 0, high = 0;
   Seconds& operator+=(const Seconds& other);
 };
 Seconds operator*(const Seconds& seconds, double factor);
+// `factor` to either side.
+Seconds around(double likely, double factor);
+
+constexpr double kOtherSettings = 2;  // iterations and sizes differ by about as much, either way
+
+// All steps of a kind taken once.
+struct WeightSum {
+  double seconds = 0, weight = 0;
+  // Of a step of that weight; empty where all that was timed is much lighter: an import tells nothing of a
+  // fit.
+  std::optional<Seconds> guess(double of_weight) const;
+};
 
 class StepTimes {
  public:
-  // `weight`: StepInfo::weight.
-  void add(const StepKind& kind, double weight, double seconds);
+  void add(const StepKind& kind, const StepSize& size, double seconds);
   void add(const StepTimes& others);
   bool empty() const { return measured_.empty(); }
-  // Half of what was measured lies between low and high.
-  std::optional<Seconds> ofKind(const StepKind& kind) const;
-  // Of the step with any settings, of the other kind of frame when there is no better: a guess with a wide
-  // range.
-  std::optional<Seconds> ofStep(const StepKind& kind) const;
-  // Seconds that a step of weight 1 takes, from all that was measured.
-  std::optional<double> secondsPerWeight() const;
-  // The best of these; empty: nothing was measured.
-  std::optional<Seconds> guess(const StepKind& kind, double weight) const;
+  // From what was measured of the step with the most alike settings and work, in proportion to the work; the
+  // range says how much that is to be doubted. With settings and work alike, half of what was measured lies
+  // between low and high.
+  std::optional<Seconds> ofStep(const StepKind& kind, double work) const;
+  bool knows(const StepKind& kind) const { return measured_.contains(kind); }
+  WeightSum byWeight() const;
+  // The best of these; empty: nothing that was measured tells.
+  std::optional<Seconds> guess(const StepKind& kind, const StepSize& size) const;
 
   friend std::string toJson(const StepTimes& times);
   friend StepTimes parseStepTimes(std::string_view json);
@@ -55,40 +72,14 @@ class StepTimes {
  private:
   struct Measured {
     double weight = 0;
-    std::vector<double> seconds;  // the newest last, so many at most
+    std::vector<double> seconds, works;  // the newest last, so many at most
   };
-  std::optional<Seconds> ofStepIn(const std::string& step, bool later) const;
   std::map<StepKind, Measured> measured_;
 };
-// Throws Error{Data}.
+// Throws Error{Data}. Times without the work they were for, from versions that did not keep it, are read.
 StepTimes parseStepTimes(std::string_view json);
 
 // What the records in results/ say, of any settings.
 StepTimes readStepTimes(const Project& project);
-
-// Seconds that a run still takes, as it goes on. The figure falls: a new guess that is higher by less than a
-// quarter does not raise what was told.
-class TimeLeft {
- public:
-  // What was measured before this run.
-  void know(const StepTimes& earlier) { earlier_.add(earlier); }
-  void expect(const StepKind& kind, double weight);
-  // It was there already, or will not be done.
-  void drop(const StepKind& kind);
-  void finish(const StepKind& kind, double weight, double seconds);
-  // The step at work is one of those expected. Empty: nothing tells yet.
-  std::optional<Seconds> left(const StepKind& now, double fraction, double seconds_in_step);
-
- private:
-  struct ToDo {
-    double weight = 0;
-    int count = 0;
-  };
-  std::optional<Seconds> guess(const StepKind& kind, double weight, std::optional<double> pace) const;
-
-  StepTimes earlier_, here_;
-  std::map<StepKind, ToDo> to_do_;
-  std::optional<double> told_;
-};
 
 }  // namespace beam

@@ -55,7 +55,8 @@ class CaptureStage final : public StageOf<CaptureOptions> {
                                             .version = 2,
                                             .reads = {Reads::Pictures},
                                             .inputs = {"capture.import"},
-                                            .weight = 0.5}}};
+                                            .weight = 0.5,
+                                            .work = {.photographs = true, .pixels = true}}}};
     return kInfo;
   }
 

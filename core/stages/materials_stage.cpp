@@ -38,14 +38,20 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                    .source = "BEAM 3.2, eq. 3 and 20",
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "capture.screen", "light.import", "surface.refine"},
-                   .weight = 20},
+                   .weight = 20,
+                   .work = {.photographs = true,
+                            .pixels = true,
+                            .downscale = kDownscale,
+                            .times = "materials.base_color_samples",
+                            .later_times = "materials.base_color_samples"}},
                   {.id = "fit",
                    .title = "Fit materials",
                    .source = "BEAM 3.2",
                    .version = 3,
                    .inputs = {"capture.import", "capture.screen", "surface.refine", "materials.bake"},
                    .weight = 10,
-                   .later = {.inputs = {"track.joints"}, .previous = {"materials.fit"}}}}};
+                   .later = {.inputs = {"track.joints"}, .previous = {"materials.fit"}},
+                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale}}}};
     return kInfo;
   }
 

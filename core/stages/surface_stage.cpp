@@ -35,6 +35,10 @@ void describe(Fields& fields, SurfaceOptions& options) {
 class SurfaceStage final : public StageOf<SurfaceOptions> {
  public:
   const StageInfo& info() const override {
+    static const StepWork kFitWork{.pixels = true,
+                                   .downscale = kDownscale,
+                                   .times = "surface.iterations",
+                                   .later_times = "surface.later.iterations"};
     static const StageInfo kInfo{
         .id = "surface",
         .title = "Surface",
@@ -46,7 +50,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "capture.screen"},
                    .weight = 1,
-                   .frames = Frames::FirstOfTake},
+                   .frames = Frames::FirstOfTake,
+                   .work = {.photographs = true}},
                   {.id = "fit",
                    .title = "Fit appearance",
                    .source = "BEAM 3.1, eq. 8",
@@ -54,24 +59,28 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "capture.screen", "surface.seed"},
                    .weight = 45,
-                   .later = {.inputs = {"track.joints"}, .previous = {"track.joints", "surface.refine"}}},
+                   .later = {.inputs = {"track.joints"}, .previous = {"track.joints", "surface.refine"}},
+                   .work = kFitWork},
                   {.id = "refine",
                    .title = "Refine geometry",
                    .source = "BEAM 3.1, E_normal",
                    .reads = {Reads::Pictures},
                    .inputs = {"capture.import", "capture.screen", "surface.fit"},
                    .weight = 45,
-                   .later = {.inputs = {"track.joints"}, .previous = {"surface.refine"}}},
+                   .later = {.inputs = {"track.joints"}, .previous = {"surface.refine"}},
+                   .work = kFitWork},
                   {.id = "score",
                    .title = "Score against the photographs",
                    .reads = {Reads::Pictures, Reads::HeldOut},
                    .inputs = {"capture.import", "capture.screen", "surface.refine"},
                    .weight = 2,
-                   .later = {.previous = {"surface.refine"}}},
+                   .later = {.previous = {"surface.refine"}},
+                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale}},
                   {.id = "mesh",
                    .title = "Fuse a mesh",
                    .inputs = {"capture.import", "capture.screen", "surface.refine"},
-                   .weight = 4}}};
+                   .weight = 4,
+                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale}}}};
     return kInfo;
   }
 

@@ -72,7 +72,11 @@ class TrackStage final : public StageOf<TrackOptions> {
                                             .inputs = {"capture.import", "capture.screen"},
                                             .weight = 30,
                                             .frames = Frames::InTakes,
-                                            .later = {.previous = {kJointsStep}}}}};
+                                            .later = {.previous = {kJointsStep}},
+                                            .work = {.pixels = true,
+                                                     .downscale = kDownscale,
+                                                     .times = "track.first_iterations",
+                                                     .later_times = "track.iterations"}}}};
     return kInfo;
   }
 

@@ -21,9 +21,7 @@ FrameScreening screeningOf(const StepContext& context) {
 
 }  // namespace
 
-int trainingDownscale(const StepContext& context) {
-  return std::get<int>(context.setting("capture.downscale"));
-}
+int trainingDownscale(const StepContext& context) { return std::get<int>(context.setting(kDownscale)); }
 
 LentViews readableViews(const StepContext& context) {
   return viewsThat(context, [](const std::string&) { return true; });

@@ -10,6 +10,8 @@
 
 namespace beam {
 
+// How many times smaller a side photographs are used.
+inline constexpr const char* kDownscale = "capture.downscale";
 // The step must have "capture.import" among its inputs: its key then holds the downscale.
 int trainingDownscale(const StepContext& context);
 // Every training view with a readable picture, good or bad.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of a run before it starts, and of the time that it still takes.
+// What is said of a run before it starts.
 #include "core/pipeline/run_estimate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
 
 #include "tests/core/pipeline/fake_pipeline.h"
 
@@ -74,7 +77,7 @@ TEST(RunEstimate, AddsUpWhatWasMeasured) {
   StepTimes times;
   for (const char* step : {"capture.import", "light.import", "surface.seed", "surface.fit", "surface.refine",
                            "materials.bake"}) {
-    times.add(kindOf(project.ingredients(step, FrameIndex{0})), 1, 10);
+    times.add(kindOf(project.ingredients(step, FrameIndex{0})), {1}, 10);
   }
   const RunEstimate e = estimateRun(project, {}, times);
   EXPECT_TRUE(e.measured);
@@ -83,23 +86,101 @@ TEST(RunEstimate, AddsUpWhatWasMeasured) {
   EXPECT_LT(e.seconds_high, 1.5 * e.seconds_low);
 }
 
+// Fake stages whose work is that of real ones.
+std::vector<StageInfo> stagesWithWork() {
+  std::vector<StageInfo> stages = fakeStages();
+  for (StageInfo& stage : stages) {
+    for (StepInfo& step : stage.steps) {
+      step.work = {.photographs = true, .pixels = true};
+      if (step.id == "fit") step.work.times = "surface.iterations";
+    }
+  }
+  return stages;
+}
+
+TEST(RunEstimate, OfTenTimesTheWorkIsAboutTenTimesAsLong) {
+  FakeHouse house(stagesWithWork());
+  const Project small = house.newProject("small.beam");
+  house.hooks.at_step = [](const std::string&, StepContext&) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  };
+  house.finish(small);
+  const StepTimes times = readStepTimes(small);
+  house.hooks.at_step = {};
+  const auto middle = [&](const Project& project) {
+    const RunEstimate e = estimateRun(project, {}, times);
+    EXPECT_TRUE(e.measured);
+    return std::sqrt(e.seconds_low * e.seconds_high);
+  };
+  Project other = house.newProject("other.beam");
+  other.set("surface.solver", std::string("fancy"));
+  const double as_large = middle(other);
+  const auto open = house.setup->open_capture;
+  house.setup->open_capture = [open](const std::filesystem::path& folder, const ImportOptions& options) {
+    ImportedCapture imported = open(folder, options);
+    for (View& view : imported.set.views) view.camera.width *= 10;
+    return imported;
+  };
+  const double ten_times = middle(house.newProject("large.beam"));
+  EXPECT_NEAR(ten_times / as_large, 10, 3);
+  Project longer = house.newProject("longer.beam");
+  longer.set("surface.iterations", 100);
+  EXPECT_GT(middle(longer), 2 * ten_times) << "a fifth of the time was the fit";
+}
+
 TEST(StepTimes, OfTheSameSettingsComeBeforeThoseOfOthersAndTheseBeforeWeights) {
   StepTimes times;
-  times.add(kind("a.fit", false, "draft"), 2, 10);
-  times.add(kind("a.fit", false, "paper"), 2, 1000);
-  times.add(kind("a.fit", true, "draft"), 2, 40);
-  EXPECT_EQ(times.guess(kind("a.fit", false, "draft"), 2)->likely, 10);
-  EXPECT_EQ(times.guess(kind("a.fit", true, "draft"), 2)->likely, 40);
-  const auto other = times.guess(kind("a.fit", true, "paper"), 2);
+  times.add(kind("a.fit", false, "draft"), {2}, 10);
+  times.add(kind("a.fit", false, "paper"), {2}, 1000);
+  times.add(kind("a.fit", true, "draft"), {2}, 40);
+  EXPECT_EQ(times.guess(kind("a.fit", false, "draft"), {2})->likely, 10);
+  EXPECT_EQ(times.guess(kind("a.fit", true, "draft"), {2})->likely, 40);
+  const auto other = times.guess(kind("a.fit", true, "paper"), {2});
   EXPECT_EQ(other->likely, 40) << "later frames, draft";
   EXPECT_LT(other->low, 25);
   EXPECT_GT(other->high, 75);
   StepTimes one;
-  one.add(kind("a.fit"), 2, 10);
-  const auto never = one.guess(kind("a.bake"), 6);
+  one.add(kind("a.fit"), {2}, 10);
+  const auto never = one.guess(kind("a.bake"), {6});
   EXPECT_EQ(never->likely, 30) << "by weight";
   EXPECT_LT(never->low, 15);
-  EXPECT_FALSE(StepTimes().guess(kind("a.fit"), 2));
+  EXPECT_FALSE(StepTimes().guess(kind("a.fit"), {2}));
+}
+
+TEST(StepTimes, GrowWithTheWorkAndSoDoesTheirDoubt) {
+  StepTimes times;
+  times.add(kind("a.fit", false, "draft"), {.weight = 1, .work = 100}, 10);
+  const auto same = times.guess(kind("a.fit", false, "draft"), {.weight = 1, .work = 100});
+  EXPECT_NEAR(same->likely, 10, 1e-9);
+  EXPECT_LT(same->high, 1.5 * same->low);
+  for (const char* settings : {"draft", "standard"}) {
+    const auto larger = times.guess(kind("a.fit", false, settings), {.weight = 1, .work = 1000});
+    EXPECT_NEAR(larger->likely, 100, 1e-9) << settings;
+    EXPECT_GT(larger->high, 4 * larger->low) << "ten times the work: a guess";
+  }
+  times.add(kind("a.fit", false, "standard"), {.weight = 1, .work = 900}, 200);
+  EXPECT_NEAR(times.guess(kind("a.fit", false, "draft"), {.weight = 1, .work = 900})->likely, 200, 1e-9)
+      << "as much work with other settings tells more than a ninth of it";
+  times.add(kind("a.fit", false, "draft"), {.weight = 1, .work = 1000}, 300);
+  EXPECT_NEAR(times.guess(kind("a.fit", false, "draft"), {.weight = 1, .work = 1000})->likely, 300, 1e-9);
+}
+
+TEST(StepTimes, OfOneThatIsMuchLighterSayNothing) {
+  StepTimes times;
+  times.add(kind("a.import"), {.weight = 0.1}, 0.01);
+  EXPECT_FALSE(times.guess(kind("a.fit"), {.weight = 45}));
+  EXPECT_TRUE(times.guess(kind("a.screen"), {.weight = 0.5}));
+}
+
+TEST(StepTimes, OfAnEarlierVersionAreReadAndDoubted) {
+  const std::string settings = digestOf(std::string("draft")).hex();
+  const StepTimes times = parseStepTimes(R"([{"step": "a.fit", "later": false, "settings": ")" + settings +
+                                         R"(", "weight": 45.0, "seconds": [10.0, 10.0]}])");
+  const auto said = times.guess(kind("a.fit", false, "draft"), {.weight = 45, .work = 1e6});
+  ASSERT_TRUE(said);
+  EXPECT_NEAR(said->likely, 10, 1e-9);
+  EXPECT_LT(said->low, 3);
+  EXPECT_GT(said->high, 35);
 }
 
 TEST(StepTimes, AreReadFromRecordsAndKeptAsText) {
@@ -107,104 +188,13 @@ TEST(StepTimes, AreReadFromRecordsAndKeptAsText) {
   const Project project = house.newProject();
   house.finish(project);
   const StepTimes times = readStepTimes(project);
-  EXPECT_TRUE(times.ofKind({"surface.refine", false, settingsDigest({})}));
-  EXPECT_TRUE(times.ofKind({"surface.refine", true, settingsDigest({})}));
-  EXPECT_FALSE(times.ofKind({"surface.fit", true, settingsDigest({})}));
+  EXPECT_TRUE(times.knows({"surface.refine", false, settingsDigest({})}));
+  EXPECT_TRUE(times.knows({"surface.refine", true, settingsDigest({})}));
+  EXPECT_FALSE(times.knows({"surface.fit", true, settingsDigest({})}));
   EXPECT_EQ(toJson(parseStepTimes(toJson(times))), toJson(times));
   for (const char* broken : {"", "{}}", "[1]", "[{\"step\": 1}]"}) {
     EXPECT_THROW(parseStepTimes(broken), Error) << broken;
   }
-}
-
-// Frames of three steps, of which the second takes as long as `truth` says; tells what was said at the start
-// of every tenth of a step.
-struct Said {
-  double elapsed, likely, low, high;
-};
-std::vector<Said> said(TimeLeft& left, int frames, const std::map<std::string, double>& truth, double total) {
-  for (int f = 0; f < frames; ++f) {
-    for (const auto& [step, seconds] : truth) left.expect(kind(step), 1);
-  }
-  std::vector<Said> all;
-  double elapsed = 0;
-  for (int f = 0; f < frames; ++f) {
-    for (const auto& [step, seconds] : truth) {
-      for (int tenth = 0; tenth < 10; ++tenth) {
-        if (const auto s = left.left(kind(step), tenth * 0.1, seconds * tenth * 0.1))
-          all.push_back({elapsed + seconds * tenth * 0.1, s->likely, s->low, s->high});
-      }
-      left.finish(kind(step), 1, seconds);
-      elapsed += seconds;
-    }
-  }
-  EXPECT_NEAR(elapsed, total, 1e-9);
-  return all;
-}
-
-TEST(TimeLeft, FallsFromTheFirstFigureOnWhenThisWasMeasuredBefore) {
-  const std::map<std::string, double> truth = {{"a.seed", 5}, {"b.fit", 60}, {"c.bake", 20}};
-  StepTimes before;
-  for (const auto& [step, seconds] : truth) before.add(kind(step), 1, 1.1 * seconds);
-  TimeLeft left;
-  left.know(before);
-  const std::vector<Said> all = said(left, 4, truth, 340);
-  ASSERT_EQ(all.size(), 120u) << "from the start";
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double before_it = i > 0 ? all[i - 1].likely : all[i].likely;
-    EXPECT_LE(all[i].likely, before_it + 1e-9) << i;
-    EXPECT_NEAR(all[i].likely, 340 - all[i].elapsed, 0.15 * 340) << i;
-    EXPECT_LE(all[i].low, all[i].likely);
-    EXPECT_GE(all[i].high, all[i].likely);
-  }
-}
-
-TEST(TimeLeft, OfARunThatNothingWasMeasuredForLearnsFromItsFirstFrame) {
-  const std::map<std::string, double> truth = {{"a.seed", 5}, {"b.fit", 60}, {"c.bake", 20}};
-  TimeLeft left;
-  const std::vector<Said> all = said(left, 4, truth, 340);
-  ASSERT_FALSE(all.empty());
-  for (const Said& s : all) {
-    if (s.elapsed < 85) continue;
-    EXPECT_NEAR(s.likely, 340 - s.elapsed, 0.26 * (340 - s.elapsed) + 1) << s.elapsed;
-  }
-}
-
-TEST(TimeLeft, KnowsNothingBeforeTheFirstMeasurement) {
-  TimeLeft left;
-  left.expect(kind("a.fit"), 1);
-  EXPECT_FALSE(left.left(kind("a.fit"), 0, 0));
-  EXPECT_FALSE(left.left(kind("a.other"), 0.5, 10)) << "not expected";
-  EXPECT_NEAR(left.left(kind("a.fit"), 0.5, 10)->likely, 10, 1e-9);
-}
-
-TEST(TimeLeft, ForgetsWhatWillNotBeDone) {
-  StepTimes before;
-  before.add(kind("a.fit"), 1, 10);
-  TimeLeft left;
-  left.know(before);
-  for (int i = 0; i < 3; ++i) left.expect(kind("a.fit"), 1);
-  EXPECT_NEAR(left.left(kind("a.fit"), 0, 0)->likely, 30, 1e-9);
-  left.drop(kind("a.fit"));
-  EXPECT_NEAR(left.left(kind("a.fit"), 0, 0)->likely, 20, 1e-9);
-}
-
-TEST(Run, TellsTheTimeThatIsLeftWhenItWasMeasuredBefore) {
-  FakeHouse house;
-  Project project = house.newProject();
-  RunRequest request;
-  for (const StageInfo& info : fakeStages()) {
-    for (const StepInfo& step : info.steps)
-      request.times.add({info.id + "." + step.id, false, settingsDigest({})}, step.weight, 100);
-  }
-  double first = -1, low = 0, high = 0;
-  for (const JobEvent& event : house.run(project, request)) {
-    const auto* p = std::get_if<StepProgress>(&event);
-    if (p == nullptr || first >= 0) continue;
-    first = p->seconds_left, low = p->seconds_left_low, high = p->seconds_left_high;
-  }
-  EXPECT_NEAR(first, 1400, 1) << "fourteen steps";
-  EXPECT_LT(low, first);
-  EXPECT_GT(high, first);
 }
 
 }  // namespace
