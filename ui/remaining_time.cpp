@@ -27,29 +27,34 @@ void RemainingTime::start() { *this = {}; }
 double RemainingTime::low_s() const { return std::max(0.0, low_end_s_ - elapsed_s_); }
 double RemainingTime::high_s() const { return std::max(0.0, high_end_s_ - elapsed_s_); }
 
-void RemainingTime::adopt(double end_s, double spread) {
-  const double left_s = end_s - elapsed_s_;
-  low_end_s_ = end_s - spread * left_s;
-  high_end_s_ = end_s + spread * left_s;
+void RemainingTime::adopt(double low_end_s, double high_end_s) {
+  low_end_s_ = low_end_s;
+  high_end_s_ = high_end_s;
   outside_since_s_ = -1;
   known_ = true;
 }
 
-void RemainingTime::feed(double elapsed_s, double left_s, double job_fraction) {
+void RemainingTime::feed(double elapsed_s, double left_s, double job_fraction, const TimeBounds& bounds) {
   elapsed_s_ = std::max(elapsed_s_, elapsed_s);
   if (left_s < 0) return;
   const double spread = kWidest + (kNarrowest - kWidest) * std::sqrt(std::clamp(job_fraction, 0.0, 1.0));
   const double end_s = elapsed_s_ + left_s;
-  if (!known_) return adopt(end_s, spread);
+  double low_s = (1 - spread) * left_s;
+  if (bounds.low_s >= 0) low_s = std::min(low_s, bounds.low_s);
+  const double low_end_s = elapsed_s_ + std::min(std::max(low_s, bounds.least_s), left_s);
+  const double high_end_s = elapsed_s_ + std::max({(1 + spread) * left_s, bounds.high_s, bounds.least_s});
+  if (!known_) return adopt(low_end_s, high_end_s);
+  // Wider at once, with room: it must not happen again soon.
+  if (elapsed_s_ + bounds.least_s > high_end_s_) return adopt(std::max(low_end_s_, elapsed_s_), high_end_s);
   if (end_s < low_end_s_ || end_s > high_end_s_) {
     if (outside_since_s_ < 0) outside_since_s_ = elapsed_s_;
-    if (elapsed_s_ - outside_since_s_ >= kPatience_s) adopt(end_s, spread);
+    if (elapsed_s_ - outside_since_s_ >= kPatience_s) adopt(low_end_s, high_end_s);
     return;
   }
   outside_since_s_ = -1;
   // Narrower by what both agree on; the estimate stays in it.
-  low_end_s_ = std::max(low_end_s_, end_s - spread * left_s);
-  high_end_s_ = std::min(high_end_s_, end_s + spread * left_s);
+  low_end_s_ = std::max(low_end_s_, low_end_s);
+  high_end_s_ = std::min(high_end_s_, high_end_s);
 }
 
 QString RemainingTime::text() const {

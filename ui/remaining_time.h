@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The time that a run still takes, in words a person can plan with: a range whose upper end falls. Estimates
 // jump where a step is slower than its share; the range is wide enough for that at first and gets narrower as
-// the run goes on, and rises only when the estimates stay outside of it.
+// the run goes on, and rises only when the estimates stay outside of it or a counter says more.
 #pragma once
 
 #include <QString>
 
 namespace beam {
 
+// What is known beside the likeliest figure, in seconds left.
+struct TimeBounds {
+  double low_s = -1, high_s = -1;  // between these it is likely to be; < 0: not known
+  double least_s = 0;              // what a counter beside it says: the upper end is never below
+};
+
 class RemainingTime {
  public:
   void start();
   // Seconds since the start of the run, estimated seconds left (below 0: not known), share of the run that is
   // done. Elapsed seconds never fall between two starts.
-  void feed(double elapsed_s, double left_s, double job_fraction);
+  void feed(double elapsed_s, double left_s, double job_fraction, const TimeBounds& bounds = {});
 
   bool known() const { return known_; }
   double low_s() const;   // seconds left from the newest feed on, at least 0
@@ -22,7 +28,7 @@ class RemainingTime {
   QString text() const;
 
  private:
-  void adopt(double end_s, double spread);
+  void adopt(double low_end_s, double high_end_s);
 
   bool known_ = false;
   double elapsed_s_ = 0;

@@ -34,6 +34,12 @@ QToolButton* splitButton(const QString& words) {
   return button;
 }
 
+// "5.5 iterations a second", "12/s".
+QString rateText(double rate, const std::string& unit) {
+  const QString number = QString::number(rate, 'f', rate < 1 ? 2 : rate < 10 ? 1 : 0);
+  return unit.empty() ? number + "/s" : number + ' ' + QString::fromStdString(unit) + " a second";
+}
+
 }  // namespace
 
 RunBar::RunBar(QWidget* parent)
@@ -125,7 +131,8 @@ void RunBar::showStarted(const QString& what) {
 void RunBar::showProgress(const StepProgress& p) {
   bar_->setValue(static_cast<int>(1000 * p.job_fraction));
   bar_->setFormat(percent(p.job_fraction));
-  remaining_.feed(p.seconds_elapsed, p.seconds_left, p.job_fraction);
+  remaining_.feed(p.seconds_elapsed, p.seconds_left, p.job_fraction,
+                  {p.seconds_left_low, p.seconds_left_high, p.countedLeft()});
   QString what = stepTitle(stages_, p.ref.step);
   if (!p.ref.frame_name.empty()) what += ", frame " + QString::fromStdString(p.ref.frame_name);
   if (p.ref.lead) what += " (again, for the frames after it to build on)";
@@ -134,7 +141,7 @@ void RunBar::showProgress(const StepProgress& p) {
   if (!p.report.label.empty() && p.report.label != p.ref.step)
     parts << QString::fromStdString(p.report.label);
   if (p.report.total > 0) parts << numberText(p.report.done) + " of " + numberText(p.report.total);
-  if (p.rate > 0) parts << QString("%1 a second").arg(p.rate, 0, 'f', p.rate < 10 ? 1 : 0);
+  if (p.rate > 0) parts << rateText(p.rate, p.report.unit);
   say(parts.join(" · "));
 }
 

@@ -12,7 +12,7 @@ QString forecastText(const RunEstimate& e) {
   const QString missing =
       QString("%1: %2 missing").arg(countText(e.frames, "frame"), countText(e.steps_missing, "step"));
   if (!e.measured) return missing + "; how long they take is known after the first";
-  return missing + ", about " + rangeText(e.seconds_low, e.seconds_high);
+  return missing + ", " + rangeText(e.seconds_low, e.seconds_high);
 }
 
 RunForecast::RunForecast(QObject* parent) : QObject(parent) {}

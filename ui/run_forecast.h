@@ -15,8 +15,8 @@
 
 namespace beam {
 
-// "1 frame: 5 steps missing, about 2 to 3 min", "2 frames: all there", "30 frames: 150 steps missing; how
-// long one takes is known after the first".
+// "1 frame: 5 steps missing, 2 to 3 min", "2 frames: everything is there already", "30 frames: 150 steps
+// missing; how long they take is known after the first".
 QString forecastText(const RunEstimate& estimate);
 
 class RunForecast final : public QObject {

@@ -350,6 +350,13 @@ TEST(RunBar, NamesStepsByTheirTitlesAndGroupsThousands) {
   for (const char* part : {"Surface: fit appearance, frame 000000", "1,234 of 5,000", "min left"})
     EXPECT_TRUE(text.contains(part)) << part << " in " << text.toStdString();
   EXPECT_FALSE(text.contains("surface.fit"));
+  progress.rate = 5.5;
+  run.showProgress(progress);
+  EXPECT_TRUE(run.text().endsWith("1,234 of 5,000 · 5.5/s")) << run.text().toStdString();
+  progress.report.unit = "iterations";
+  run.showProgress(progress);
+  EXPECT_TRUE(run.text().endsWith("5.5 iterations a second")) << run.text().toStdString();
+  EXPECT_GE(run.remaining().high_s(), progress.countedLeft());
   run.showWaiting("waits for frame 000000, which process 1234 computes");
   EXPECT_TRUE(run.text().contains("process 1234"));
 }

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "ui/remaining_time.h"
+#include "ui/run_forecast.h"
 
 namespace beam {
 namespace {
@@ -108,6 +109,41 @@ TEST(RemainingTime, WordsOfTheUpperEndNeverRiseAsItFalls) {
     EXPECT_GE(minutes(high) * 60, high - 1) << "rounded outward";
     before = minutes(high);
   }
+}
+
+TEST(RemainingTime, UpperEndIsNeverBelowWhatACounterSays) {
+  RemainingTime time;
+  for (double t = 1; t < 10; t += 1) time.feed(t, 20, 0.01);
+  EXPECT_EQ(time.text().toStdString(), "less than a minute left");
+  time.feed(10, 460, 0.02, {400, 900, 450});
+  EXPECT_GE(time.high_s(), 450) << "at once";
+  EXPECT_LE(time.low_s(), 460);
+  double high = time.high_s();
+  for (double t = 11; t < 459; t += 1) {
+    time.feed(t, 470 - t, 0.02 + 0.001 * t, {460 - t, 900 - t, 460 - t});
+    ASSERT_GE(time.high_s(), 460 - t);
+    EXPECT_LE(time.high_s(), high) << t;
+    high = time.high_s();
+  }
+}
+
+TEST(RemainingTime, IsAsWideAsItsBounds) {
+  RemainingTime time;
+  time.feed(1, 100, 0.9, {20, 400});
+  EXPECT_LE(time.low_s(), 20);
+  EXPECT_GE(time.high_s(), 400);
+  time.feed(2, 99, 0.9, {80, 120});
+  EXPECT_GE(time.low_s(), 75);
+  EXPECT_LE(time.high_s(), 121);
+}
+
+TEST(RunForecast, SaysHowLongInWordsOfOneKind) {
+  const auto text = [](double low, double high) {
+    return forecastText({1, 1, 5, 9, low, high, true}).toStdString();
+  };
+  EXPECT_EQ(text(5, 40), "1 frame: 5 steps missing, up to 1 min");
+  EXPECT_EQ(text(150, 180), "1 frame: 5 steps missing, 2 to 3 min");
+  EXPECT_EQ(text(180, 180), "1 frame: 5 steps missing, about 3 min");
 }
 
 TEST(RemainingTime, EndsInLessThanAMinute) {
