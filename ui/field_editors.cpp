@@ -14,11 +14,11 @@
 #include "core/base/error.h"
 #include "core/base/field_text.h"
 #include "ui/quiet_combo.h"
+#include "ui/words.h"
 
 namespace beam {
 namespace {
 
-constexpr int kShownDigits = 6;
 constexpr int kLongestFound = 24;  // characters of a refused text that are said again
 
 QHBoxLayout* rowOf(QWidget* owner) {
@@ -198,12 +198,7 @@ class TextEditor final : public FieldEditor {
     showTip();
     Q_EMIT refused(why);
   }
-  void showTip() {
-    QString tip = tip_;
-    if (valueText(shown_).toDouble() != shownText(shown_).toDouble())
-      tip += "<br>in force: " + valueText(shown_);
-    line_->setToolTip(why_.isEmpty() ? tip : why_.toHtmlEscaped());
-  }
+  void showTip() { line_->setToolTip(why_.isEmpty() ? tip_ : why_.toHtmlEscaped()); }
 
   FieldInfo info_;
   FieldValue shown_;
@@ -221,21 +216,15 @@ FieldEditor* makeFieldEditor(const Field& field, QWidget* parent) {
 }
 
 QString valueText(const FieldValue& value) {
-  const QString exact = QString::fromStdString(toText(value)), shown = shownText(value);
-  return exact.toDouble() == shown.toDouble() && std::holds_alternative<double>(value) ? shown : exact;
+  if (const bool* on = std::get_if<bool>(&value)) return *on ? "on" : "off";
+  if (const int* whole = std::get_if<int>(&value)) return numberText(*whole);
+  if (const double* number = std::get_if<double>(&value)) return figureText(*number);
+  return QString::fromStdString(toText(value));
 }
 
 QString shownText(const FieldValue& value) {
-  const double* number = std::get_if<double>(&value);
-  if (!number) return QString::fromStdString(toText(value));
-  constexpr double kPlain = 1e15;  // above, a double does not hold every whole number
-  const double size = std::abs(*number);
-  if (*number == std::floor(*number) && size < kPlain) return QString::number(*number, 'f', 0);
-  if (size < 1e-7 || size >= kPlain) return QString::number(*number, 'g', kShownDigits);
-  const int decimals = std::max(0, kShownDigits - 1 - static_cast<int>(std::floor(std::log10(size))));
-  QString text = QString::number(*number, 'f', decimals);
-  while (text.contains('.') && (text.endsWith('0') || text.endsWith('.'))) text.chop(1);
-  return text;
+  const bool text = std::holds_alternative<std::string>(value) || std::holds_alternative<bool>(value);
+  return text ? QString::fromStdString(toText(value)) : valueText(value).remove(',');
 }
 
 }  // namespace beam

@@ -33,9 +33,9 @@ class FieldEditor : public QWidget {
 
 FieldEditor* makeFieldEditor(const Field& field, QWidget* parent = nullptr);
 
-// Every digit; for tooltips.
+// In a sentence: "on", "20,000", "0.416667".
 QString valueText(const FieldValue& value);
-// As a field shows it: six digits of what is no whole number.
+// As a field shows it, to be typed over: the same without commas.
 QString shownText(const FieldValue& value);
 
 }  // namespace beam

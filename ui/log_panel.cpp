@@ -6,6 +6,7 @@
 #include <QTime>
 
 #include "ui/theme.h"
+#include "ui/words.h"
 
 namespace beam {
 namespace {
@@ -54,6 +55,12 @@ LogPanel::LogPanel(QWidget* parent) : QPlainTextEdit(parent) {
 LogPanel::~LogPanel() { removeLogSink(sink_); }
 
 void LogPanel::add(LogLevel level, const QString& text) {
+  drain();
+  append(level, text);
+}
+
+void LogPanel::append(LogLevel level, const QString& told) {
+  const QString text = withStepTitles(stages_, told);
   const bool again = times_ > 0 && level == last_level_ && text == last_text_;
   times_ = again ? times_ + 1 : 1;
   last_level_ = level;
@@ -98,7 +105,7 @@ void LogPanel::drain() {
   }
   for (const LogRecord& record : records) {
     const QString text = QString::fromStdString(record.text);
-    add(record.level, text);
+    append(record.level, text);
     if (record.level == LogLevel::Warning) Q_EMIT warned(text);
   }
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/log.h"
+#include "core/pipeline/stage_registry.h"
 
 namespace beam {
 
@@ -19,7 +20,10 @@ class LogPanel final : public QPlainTextEdit {
  public:
   explicit LogPanel(QWidget* parent = nullptr);
   ~LogPanel() override;
+  // After what was logged before it.
   void add(LogLevel level, const QString& text);
+  // Whose titles stand for the ids in what is logged.
+  void setStages(const std::vector<StageInfo>& stages) { stages_ = stages; }
 
  Q_SIGNALS:
   void warned(const QString& text);  // by the program's own log, from any thread
@@ -30,8 +34,10 @@ class LogPanel final : public QPlainTextEdit {
 
  private:
   void drain();
+  void append(LogLevel level, const QString& told);
   void follow();
 
+  std::vector<StageInfo> stages_;
   std::mutex mutex_;
   std::vector<LogRecord> waiting_;  // from any thread
   QTimer timer_;

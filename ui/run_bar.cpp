@@ -72,9 +72,6 @@ RunBar::RunBar(QWidget* parent)
   row->addWidget(stop_);
   row->addLayout(column, 1);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
-  // What is Ignored asks for no room of its own.
-  column->addSpacerItem(new QSpacerItem(kWishedLetters * fontMetrics().averageCharWidth(), 0,
-                                        QSizePolicy::Preferred, QSizePolicy::Fixed));
   setRunning(false);
 }
 
@@ -88,10 +85,16 @@ void RunBar::bind(const std::vector<QAction*>& runs, const std::vector<QAction*>
   for (QAction* action : later) stop_->menu()->addAction(action);
 }
 
+int RunBar::widthFor(int letters) const {
+  return run_->sizeHint().width() + stop_->sizeHint().width() + 2 * layout()->spacing() +
+         letters * fontMetrics().averageCharWidth();
+}
+
+// The words are Ignored: they ask for no room of their own.
+QSize RunBar::sizeHint() const { return {widthFor(kWishedLetters), QWidget::sizeHint().height()}; }
+
 QSize RunBar::minimumSizeHint() const {
-  const int words = kLeastLetters * fontMetrics().averageCharWidth();
-  return {run_->sizeHint().width() + stop_->sizeHint().width() + 2 * layout()->spacing() + words,
-          QWidget::minimumSizeHint().height()};
+  return {widthFor(kLeastLetters), QWidget::minimumSizeHint().height()};
 }
 
 void RunBar::setStages(const std::vector<StageInfo>& stages) { stages_ = stages; }
@@ -122,6 +125,7 @@ void RunBar::say(const QString& words) {
 }
 
 void RunBar::showStarted(const QString& what) {
+  what_ = what;
   setRunning(true);
   bar_->setValue(0);
   bar_->setFormat(percent(0));
@@ -155,7 +159,7 @@ void RunBar::showReport(const ProgressReport& report) {
   QStringList parts;
   if (remaining_.known()) parts << remaining_.text();
   if (!report.label.empty()) parts << QString::fromStdString(report.label);
-  say(parts.join(" · "));
+  say(parts.isEmpty() ? what_ : what_ + ": " + parts.join(" · "));
 }
 
 void RunBar::showWaiting(const QString& text) {

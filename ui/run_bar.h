@@ -34,7 +34,7 @@ class RunBar final : public QWidget {
   void setPlan(const QString& plan);
   void showStarted(const QString& what);
   void showProgress(const StepProgress& progress);
-  // `done` of a job that is not a run: a sample being made.
+  // Of a job that is not a run: a sample being made. What was said at its start goes before.
   void showReport(const ProgressReport& report);
   // The run waits for work of another process: "waits for frame 000000, which process 1234 computes".
   void showWaiting(const QString& text);
@@ -45,9 +45,11 @@ class RunBar final : public QWidget {
   // What is said now: of the run, of the last one, or the plan of the next.
   QString text() const;
   const RemainingTime& remaining() const { return remaining_; }
+  QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
 
  private:
+  int widthFor(int letters) const;  // of the words
   void setRunning(bool running);
   void showParts();
   void say(const QString& words);
@@ -58,7 +60,7 @@ class RunBar final : public QWidget {
   std::vector<StageInfo> stages_;
   RemainingTime remaining_;
   QElapsedTimer clock_;
-  QString stopping_;
+  QString stopping_, what_;  // `what_`: was started
   bool running_ = false;
 };
 

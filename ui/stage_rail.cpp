@@ -165,8 +165,8 @@ QString StageRail::tip(int index) const {
   return text;
 }
 
-// Ring: to do. Ring with a dash: not needed. Half: some frames. Tick: all of them. Dashed ring: stale.
-// Exclamation mark: failed. Bars: waits for something. Triangle: at work.
+// Ring: to do, or nothing is open. Ring with a dash: not needed. Half: some frames. Tick: all of them. Dashed
+// ring: stale. Exclamation mark: failed. Bars: waits for something. Triangle: at work.
 void StageRail::paintSign(QPainter& p, const QRectF& box, const StageStatus& stage) const {
   const Colors& color = colors();
   const QPointF c = box.center();
@@ -219,6 +219,7 @@ void StageRail::paintSign(QPainter& p, const QRectF& box, const StageStatus& sta
       ring(color.disabled);
       p.drawLine(c + r * QPointF(-0.4, 0), c + r * QPointF(0.4, 0));
       break;
+    case StageMark::Closed:
     case StageMark::Nothing:
       ring(color.quiet);
       break;
@@ -247,7 +248,9 @@ void StageRail::paintWide(QPainter& p, const QRectF& inside, int index) const {
   const StageStatus& stage = stages_[index];
   const double sign = signSize(), line = fontMetrics().height();
   paintSign(p, QRectF(inside.left(), inside.center().y() - sign / 2, sign, sign), stage);
-  QRectF row(inside.left() + sign + kPad, inside.center().y() - line, inside.width() - sign - kPad, line);
+  const QString words = stateText(stage);
+  const double top = inside.center().y() - (words.isEmpty() ? line / 2 : line);
+  QRectF row(inside.left() + sign + kPad, top, inside.width() - sign - kPad, line);
   const double taken = paintWarnings(p, row, warningsOf(stage.id));
   p.setFont(bold(font()));
   p.setPen(colors().strong);
@@ -258,7 +261,7 @@ void StageRail::paintWide(QPainter& p, const QRectF& inside, int index) const {
   p.setFont(font());
   p.setPen(colors().muted);
   p.drawText(row, Qt::AlignLeft | Qt::AlignVCenter,
-             p.fontMetrics().elidedText(stateText(stage), Qt::ElideRight, static_cast<int>(row.width())));
+             p.fontMetrics().elidedText(words, Qt::ElideRight, static_cast<int>(row.width())));
 }
 
 void StageRail::paintNarrow(QPainter& p, const QRectF& inside, int index) const {
@@ -285,7 +288,7 @@ void StageRail::paintCell(QPainter& p, int index) const {
   const Colors& color = colors();
   const StageStatus& stage = stages_[index];
   const QRectF box = cell(index);
-  const bool is_chosen = stage.id == selected_;
+  const bool is_chosen = stage.open && stage.id == selected_;
   p.setPen(QPen(is_chosen ? color.accent : color.control_edge, 1));
   p.setBrush(is_chosen ? color.chosen : index == hovered_ ? color.hover : color.card);
   p.drawRoundedRect(box, 5, 5);
@@ -358,7 +361,8 @@ void StageRail::moveCursor(int index) {
 void StageRail::sayWhereTheFocusIs() {
   if (count() == 0) return;
   const StageStatus& stage = stages_[cursor_];
-  setAccessibleDescription(titleOf(stage, cursor_) + ", " + stateText(stage));
+  const QString words = stateText(stage);
+  setAccessibleDescription(titleOf(stage, cursor_) + (words.isEmpty() ? words : ", " + words));
 }
 
 void StageRail::focusInEvent(QFocusEvent* event) {

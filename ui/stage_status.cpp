@@ -85,6 +85,7 @@ std::vector<StageStatus> stageStatus(const TakeSurvey& survey, const std::vector
                        .to_do = count(CellState::Empty),
                        .detail = QString::fromStdString(lane.blocked_reason)};
     showFrame(status, survey, lane, shown);
+    status.detail = withStepTitles(infos, status.detail);
     all.push_back(std::move(status));
   }
   return all;
@@ -96,19 +97,20 @@ std::vector<StageStatus> stagesWithoutTake(const std::vector<StageInfo>& infos) 
     all.push_back({.id = info.id,
                    .title = QString::fromStdString(info.title),
                    .summary = QString::fromStdString(info.summary),
-                   .to_do = 1});
+                   .open = false});
   }
   return all;
 }
 
 StageMark markOf(const StageStatus& stage) {
+  if (!stage.open) return StageMark::Closed;
   if (stage.failed > 0) return StageMark::Failed;
   if (stage.running > 0) return StageMark::Running;
   if (stage.stale_frames > 0) return StageMark::Stale;
   if (stage.blocked > 0) return StageMark::Blocked;
   if (stage.done > 0 && stage.done == stage.frames) return StageMark::Done;
   if (stage.done > 0) return StageMark::Partly;
-  return stage.frames == 0 && stage.to_do == 0 ? StageMark::NotNeeded : StageMark::Nothing;
+  return stage.frames == 0 ? StageMark::NotNeeded : StageMark::Nothing;
 }
 
 QString stageWords(const StageStatus& stage) {
@@ -137,6 +139,8 @@ QString stageWords(const StageStatus& stage) {
       return QString("%1 of %2 done").arg(numberText(stage.done), numberText(stage.frames));
     case StageMark::NotNeeded:
       return "not needed";
+    case StageMark::Closed:
+      return {};
     case StageMark::Nothing:
       break;
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "ui/theme.h"
+#include "ui/words.h"
 
 namespace beam {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kRight = 10, kMargin = 8;  // right of the cells; around the na
 constexpr double kMostNames = 0.3;          // share of the width that the names may take
 constexpr double kLeastLane = 11, kGap = 4, kMemory = 5;
 constexpr double kOvershoot = 2;  // of a failed frame, above and below its lane
-constexpr int kLeastCells = 120;
+constexpr int kLeastCells = 120, kAxisDigits = 4;
 constexpr const char* kMemoryName = "in memory";
 
 // 1, 2, 5, 10, ... frames between numbers.
@@ -28,6 +29,25 @@ int labelStep(double cell_width, double label_width) {
       if (step * cell_width >= label_width) return step;
     }
   }
+}
+
+struct Span {
+  double low = INFINITY, high = -INFINITY;  // low above high: there is no value
+};
+
+Span limitsOf(const SurveyCurve& curve) {
+  Span span;
+  for (const double v : curve.values) {
+    if (!std::isfinite(v)) continue;
+    span.low = std::min(span.low, v);
+    span.high = std::max(span.high, v);
+  }
+  return span;
+}
+
+// Shorter than in a tooltip, where that is no whole number.
+QString axisText(double value) {
+  return figureText(value == std::floor(value) ? value : QString::number(value, 'g', kAxisDigits).toDouble());
 }
 
 }  // namespace
@@ -84,6 +104,7 @@ void TimelineLanes::askForHeight() {
     const QString title = QString::fromStdString(survey_->lanes[i].title);
     titles_ = std::max(titles_, static_cast<double>(fontMetrics().horizontalAdvance(title)));
   }
+  titles_ += 1;  // rounding must not elide what fits
   updateGeometry();
   Q_EMIT heightChanged();
 }
@@ -199,12 +220,7 @@ void TimelineLanes::paintCurve(QPainter& p) const {
   if (curve_.isEmpty()) return;
   const QRectF box = curveBox();
   p.fillRect(box, colors().inside);
-  double low = INFINITY, high = -INFINITY;
-  for (const double v : curve ? curve->values : std::vector<double>()) {
-    if (!std::isfinite(v)) continue;
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
+  const auto [low, high] = curve ? limitsOf(*curve) : Span{};
   p.setFont(smallFont(font()));
   p.setPen(colors().muted);
   if (low > high) {
@@ -212,8 +228,11 @@ void TimelineLanes::paintCurve(QPainter& p) const {
     return;
   }
   const QRectF names(0, box.top(), box.left() - kMargin / 2, box.height());
-  p.drawText(names, Qt::AlignRight | Qt::AlignTop, QString::number(high, 'g', 5));
-  if (high > low) p.drawText(names, Qt::AlignRight | Qt::AlignBottom, QString::number(low, 'g', 5));
+  const auto shown = [&](double value) {
+    return p.fontMetrics().elidedText(axisText(value), Qt::ElideRight, static_cast<int>(names.width()));
+  };
+  p.drawText(names, Qt::AlignRight | Qt::AlignTop, shown(high));
+  if (high > low) p.drawText(names, Qt::AlignRight | Qt::AlignBottom, shown(low));
   const auto at = [&](int f) {
     const double share = high > low ? (curve->values[f] - low) / (high - low) : 0.5;
     return QPointF(centerOf(f), box.bottom() - 5 - share * (box.height() - 10));
@@ -301,7 +320,8 @@ QString TimelineLanes::tipAt(QPointF at) const {
     const LaneShade shade = shades_[i][f];
     QString words = QString("%1, %2: %3").arg(frame, QString::fromStdString(lane.title), wordsOf(shade));
     if (shade == LaneShade::Blocked) words += "\n" + QString::fromStdString(lane.blocked_reason);
-    if (!lane.notes[f].empty()) words += "\n" + QString::fromStdString(lane.notes[f]);
+    if (!lane.notes[f].empty())
+      words += "\n" + withStepTitles(stages_, QString::fromStdString(lane.notes[f]));
     return words;
   }
   if (memoryBox().adjusted(-cellsBox().left(), 0, 0, 0).contains(at)) {
@@ -311,10 +331,11 @@ QString TimelineLanes::tipAt(QPointF at) const {
   }
   const SurveyCurve* curve = curve_.isEmpty() ? nullptr : survey_->curve(curve_.toStdString());
   if (curve && curveBox().adjusted(-cellsBox().left(), 0, 0, 0).contains(at)) {
-    if (on_names) return curve_title_;
+    const auto [low, high] = limitsOf(*curve);
+    if (on_names)
+      return curve_title_ + (low > high ? "" : "\n" + figureText(low) + " to " + figureText(high));
     const double v = curve->values[f];
-    return QString("%1\n%2: %3")
-        .arg(curve_title_, frame, std::isfinite(v) ? QString::number(v, 'g', 6) : "none");
+    return QString("%1\n%2: %3").arg(curve_title_, frame, std::isfinite(v) ? figureText(v) : "none");
   }
   return on_names ? QString() : frame;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/pipeline/stage_registry.h"
 #include "ui/lane_shades.h"
 #include "viewers/playback_clock.h"
 
@@ -20,6 +21,8 @@ class TimelineLanes final : public QWidget {
  public:
   explicit TimelineLanes(QWidget* parent = nullptr);
 
+  // Whose titles stand for the ids in what is noted of a frame.
+  void setStages(const std::vector<StageInfo>& stages) { stages_ = stages; }
   void setSurvey(std::shared_ptr<const TakeSurvey> survey);  // null: nothing open
   void setFrame(int frame);
   void setRange(FrameRange range);
@@ -69,6 +72,7 @@ class TimelineLanes final : public QWidget {
   QString tipAt(QPointF position) const;
 
   std::shared_ptr<const TakeSurvey> survey_;
+  std::vector<StageInfo> stages_;
   double titles_ = 0;  // width of the widest
   int frame_ = 0;
   FrameRange range_{0, -1};

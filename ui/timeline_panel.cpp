@@ -13,6 +13,7 @@
 #include <QVBoxLayout>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ui/elided_label.h"
 #include "ui/quiet_combo.h"
@@ -91,6 +92,7 @@ TimelinePanel::TimelinePanel(ProjectModel& model, Player& player, QWidget* paren
   column->setSpacing(0);
   column->addLayout(makeTransport());
   column->addWidget(scroll_, 1);
+  lanes_->setStages(model_.services().pipeline->stages.infos());
   connectModel();
   showIcons();
   showState();
@@ -377,10 +379,12 @@ void TimelinePanel::showMemory() {
   const std::size_t frames = model_.capture() ? model_.capture()->frames.size() : 0;
   const std::vector<bool> held = model_.cache().held(frames);
   lanes_->setMemory(held);
+  const auto megabytes = [](std::size_t bytes) {
+    return numberText(std::llround(1e-6 * static_cast<double>(bytes)));
+  };
   lanes_->setMemoryWords(QString("%1 in memory, %2 of %3 MB")
-                             .arg(countText(std::count(held.begin(), held.end(), true), "frame"))
-                             .arg(1e-6 * static_cast<double>(model_.cache().bytes()), 0, 'f', 0)
-                             .arg(1e-6 * static_cast<double>(model_.cache().budget()), 0, 'f', 0));
+                             .arg(countText(std::count(held.begin(), held.end(), true), "frame"),
+                                  megabytes(model_.cache().bytes()), megabytes(model_.cache().budget())));
 }
 
 }  // namespace beam

@@ -15,6 +15,8 @@ namespace beam {
 
 // 1,234,567.
 QString numberText(std::int64_t n);
+// 20,000; 0.416667; 1.5e-9: at most six digits of what is no whole number.
+QString figureText(double value);
 // "1 frame", "1,200 frames". `one`: the singular; `many`: where an s at its end will not do.
 QString countText(std::int64_t n, const QString& one, const QString& many = {});
 
@@ -23,7 +25,10 @@ QString durationText(double seconds);
 
 // "surface.fit" -> "Surface: fit appearance". An id that no stage has stays as it is.
 QString stepTitle(const std::vector<StageInfo>& stages, const std::string& step);
-// "surface.fit.seconds" -> "Surface, fit appearance: time (s)"; the score's unit by the end of its name.
+// The ids of steps in a sentence as their titles: what the core and the command line say, as the window does.
+QString withStepTitles(const std::vector<StageInfo>& stages, QString text);
+// "surface.fit.seconds" -> "Surface, fit appearance: time (s)". A score that is not known here has its unit
+// by the end of its name.
 QString curveTitle(const std::vector<StageInfo>& stages, const std::string& curve);
 
 }  // namespace beam

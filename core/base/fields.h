@@ -12,8 +12,9 @@
 namespace beam {
 
 enum class Effect {
-  Result,     // changes numbers: enters the key
-  SpeedOnly,  // changes time or memory only
+  Result,        // changes numbers: enters the key
+  LaterResults,  // changes numbers of what is computed from then on; results that are there stay: in no key
+  SpeedOnly,     // changes time or memory only
 };
 
 struct FieldInfo {

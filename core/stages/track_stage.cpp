@@ -43,7 +43,7 @@ void describe(Fields& f, TrackOptions& o) {
            .min = 0,
            .max = 1e6,
            .unit = "frames",
-           .effect = Effect::SpeedOnly},
+           .effect = Effect::LaterResults},
           o.segment_frames);
   f.field({.name = "overlap",
            .label = "Overlap of segments",
@@ -52,7 +52,7 @@ void describe(Fields& f, TrackOptions& o) {
            .min = 0,
            .max = 100,
            .unit = "frames",
-           .effect = Effect::SpeedOnly},
+           .effect = Effect::LaterResults},
           o.overlap);
 }
 

@@ -90,7 +90,9 @@ TEST(StageStatus, WhatAsksForAttentionIsTheSign) {
   EXPECT_EQ(markOf(statusOf({Done, Stale, Running})), StageMark::Running);
   EXPECT_EQ(markOf(statusOf({Done, Empty})), StageMark::Partly);
   EXPECT_EQ(markOf(statusOf({Empty, Empty})), StageMark::Nothing);
-  EXPECT_EQ(markOf(stagesWithoutTake(stages()).front()), StageMark::Nothing);
+  EXPECT_EQ(markOf(stagesWithoutTake(stages()).front()), StageMark::Closed);
+  EXPECT_TRUE(stageWords(stagesWithoutTake(stages()).front()).isEmpty())
+      << "nothing is open: nothing is to do";
 }
 
 TEST(StageStatus, TheTooltipTellsCountsAndTheShownFrame) {
@@ -199,7 +201,7 @@ TEST_F(Rail, TheStageAtWorkSaysHowFarItIs) {
   rail.setRunning("track", 0.425);
   EXPECT_EQ(rail.wordsOf("track").toStdString(), "running, 42 %");
   rail.setRunning({}, 0);
-  EXPECT_EQ(rail.wordsOf("track").toStdString(), "to do");
+  EXPECT_TRUE(rail.wordsOf("track").isEmpty());
 }
 
 struct Bar {
@@ -374,9 +376,49 @@ TEST(Words, CountAndGroupInOneWay) {
 TEST(Words, CurvesHaveTitlesAndUnits) {
   const auto title = [](const char* curve) { return curveTitle(stages(), curve).toStdString(); };
   EXPECT_EQ(title("surface.fit.seconds"), "Surface, fit appearance: time (s)");
-  EXPECT_EQ(title("track.fit.motion_p95_m"), "Track, fit appearance: motion p95 (m)");
-  EXPECT_EQ(title("surface.fit.gaussians"), "Surface, fit appearance: gaussians");
+  EXPECT_EQ(title("track.fit.motion_p95_m"), "Track, fit appearance: motion, 95th percentile (m)");
+  EXPECT_EQ(title("surface.fit.gaussians"), "Surface, fit appearance: Gaussians");
+  EXPECT_EQ(title("surface.fit.e_smooth"), "Surface, fit appearance: E_smooth (m²)");
+  EXPECT_EQ(title("surface.fit.flicker_base_color"),
+            "Surface, fit appearance: flicker of base colour (0 to 1)");
+  EXPECT_EQ(title("surface.fit.some_color_m2"), "Surface, fit appearance: some colour (m²)");
   EXPECT_EQ(title("nobody.knows.this"), "nobody.knows.this");
+}
+
+TEST(Words, ACurveDoesNotNameItsStageTwice) {
+  StageInfo track;
+  track.id = "track";
+  track.title = "Track";
+  track.steps = {{.id = "joints", .title = "Track joints"}};
+  EXPECT_EQ(curveTitle({track}, "track.joints.joints").toStdString(), "Track joints: number of joints");
+}
+
+TEST(Words, StepsOfASentenceHaveTheirTitles) {
+  const auto told = [](const char* text) { return withStepTitles(stages(), text).toStdString(); };
+  EXPECT_EQ(told("surface.fit, frame 000001 done in 2.0 s"),
+            "Surface: fit appearance, frame 000001 done in 2.0 s");
+  EXPECT_EQ(told("the result of surface.fit."), "the result of Surface: fit appearance.");
+  for (const char* other :
+       {"raise surface.fit.weight", "/a/surface.fit/b", "my.surface.fit", "surface.fitting"})
+    EXPECT_EQ(told(other), other);
+}
+
+TEST(Words, FiguresHaveSixDigitsAndGroupedThousands) {
+  EXPECT_EQ(figureText(5.0 / 12).toStdString(), "0.416667");
+  EXPECT_EQ(figureText(20000).toStdString(), "20,000");
+  EXPECT_EQ(figureText(-12345.678).toStdString(), "-12,345.7");
+  EXPECT_EQ(figureText(123456).toStdString(), "123,456");
+  EXPECT_EQ(figureText(0.00005).toStdString(), "0.00005");
+  EXPECT_EQ(figureText(-0.0).toStdString(), "0");
+}
+
+TEST(RunBarWords, ATaskSaysAllTheTimeWhatIsMade) {
+  RunBar run;
+  run.showStarted("Making the sample");
+  run.showReport({0.01, "", 0, 0});
+  EXPECT_EQ(run.text().toStdString(), "Making the sample");
+  run.showReport({0.1, "photographs", 0, 0});
+  EXPECT_EQ(run.text().toStdString(), "Making the sample: photographs");
 }
 
 }  // namespace
