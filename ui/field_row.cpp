@@ -2,7 +2,9 @@
 #include "ui/field_row.h"
 
 #include <QLabel>
+#include <QStyle>
 #include <QToolButton>
+#include <QVariant>
 
 #include <algorithm>
 
@@ -23,7 +25,16 @@ QString tipOf(const Field& field, const FieldValue& standard) {
   if (const std::string range = rangeText(info); !range.empty()) facts += ", range " + escaped(range);
   QStringList lines{QString("<b>%1</b>").arg(escaped(info.label)), escaped(info.help), facts,
                     QString("<code>--set %1=…</code>").arg(escaped(info.name))};
-  if (info.effect == Effect::SpeedOnly) lines << "Changes speed only, never results.";
+  switch (info.effect) {
+    case Effect::Result:
+      break;
+    case Effect::LaterResults:
+      lines << "Changes frames that are computed from now on; results that are there stay as they are.";
+      break;
+    case Effect::SpeedOnly:
+      lines << "Changes speed only, never results.";
+      break;
+  }
   return lines.join("<br>");
 }
 
@@ -61,9 +72,7 @@ void FieldRow::update(const Field& field, const FieldValue& standard, const QStr
   label_->setToolTip(tip);
   editor_->setTip(tip);
   editor_->setReadOnly(!why_not.isEmpty());
-  QFont font = label_->font();
-  font.setBold(changed_);
-  label_->setFont(font);
+  showChanged();
   // The button keeps its place, so that nothing jumps under the hand.
   reset_->setEnabled(changed_ && why_not.isEmpty());
   reset_->setText(changed_ ? "↺" : " ");
@@ -72,6 +81,14 @@ void FieldRow::update(const Field& field, const FieldValue& standard, const QStr
                      : changed_         ? "Back to the preset's value, " + value
                                         : "This is the preset's value, " + value);
   updateGeometry();
+}
+
+// By the sheet: a font that is set by hand does not outlive a change of theme.
+void FieldRow::showChanged() {
+  if (label_->property("changed").toBool() == changed_) return;
+  label_->setProperty("changed", changed_);
+  label_->style()->unpolish(label_);
+  label_->style()->polish(label_);
 }
 
 int FieldRow::longestWord() const {

@@ -46,6 +46,7 @@ class FieldRow final : public QWidget {
   };
   Places placesAt(int width) const;
   void place();
+  void showChanged();
   int longestWord() const;
 
   QLabel* label_;

@@ -23,7 +23,7 @@ namespace beam {
 namespace {
 
 constexpr int kLeastLetters = 4;
-constexpr int kSizeLetters = 30;                    // from this width on the sizes of pictures are shown
+constexpr int kLeastSizeLetters = 5;                // of the size of a camera's pictures, however narrow
 constexpr int kName = 0, kSize = 1, kProblems = 2;  // columns of the cameras
 
 QFrame* line() {
@@ -64,11 +64,12 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
   frames_->setMinimumContentsLength(kLeastLetters);
   cameras_->setHeaderHidden(true);
   cameras_->setColumnCount(3);
+  cameras_->setHeaderLabels({"", "", ""});  // numbers, else, which widen the columns
   cameras_->header()->setStretchLastSection(false);
   cameras_->header()->setMinimumSectionSize(4);
   cameras_->header()->setSectionResizeMode(kName, QHeaderView::Stretch);
-  for (const int column : {kSize, kProblems})
-    cameras_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
+  cameras_->header()->setSectionResizeMode(kSize, QHeaderView::Fixed);
+  cameras_->header()->setSectionResizeMode(kProblems, QHeaderView::ResizeToContents);
   cameras_->setRootIsDecorated(true);
   cameras_->setIndentation(14);
   cameras_->setFocusPolicy(Qt::StrongFocus);
@@ -77,6 +78,7 @@ ProjectPanel::ProjectPanel(ProjectModel& model, QWidget* parent)
   cameras_->setExpandsOnDoubleClick(true);
   cameras_->setAccessibleName("Cameras");
   cameras_->installEventFilter(this);
+  cameras_->viewport()->installEventFilter(this);
   makeColumn();
   connectAll();
   refresh();
@@ -137,20 +139,36 @@ QSize ProjectPanel::minimumSizeHint() const {
 // Some cameras are always to be seen; beyond that the panel scrolls.
 void ProjectPanel::fitRows() { cameras_->setMinimumHeight(6 * (fontMetrics().height() + 8)); }
 
-void ProjectPanel::resizeEvent(QResizeEvent* event) {
-  QWidget::resizeEvent(event);
-  cameras_->setColumnHidden(kSize, width() < kSizeLetters * fontMetrics().averageCharWidth());
+// The sizes take what the names leave; what is cut ends in an ellipsis, and the tooltip has it whole.
+void ProjectPanel::fitColumns() {
+  const QFontMetrics metrics = cameras_->fontMetrics();
+  int name = 0, size = 0;
+  for (QTreeWidgetItemIterator it(cameras_); *it; ++it) {
+    if (!viewOf(*it)) continue;
+    name = std::max(name, metrics.horizontalAdvance((*it)->text(kName)));
+    size = std::max(size, metrics.horizontalAdvance((*it)->text(kSize)));
+  }
+  constexpr int around = 12;  // of a cell, by the style and the sheet
+  const int taken = name + around + 2 * cameras_->indentation() + cameras_->columnWidth(kProblems);
+  const int least = std::min(size, kLeastSizeLetters * metrics.averageCharWidth()) + around;
+  cameras_->header()->resizeSection(kSize,
+                                    std::clamp(cameras_->viewport()->width() - taken, least, size + around));
 }
 
 void ProjectPanel::changeEvent(QEvent* event) {
   QWidget::changeEvent(event);
-  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) fitRows();
+  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) {
+    fitRows();
+    fitColumns();
+  }
 }
 
 bool ProjectPanel::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == cameras_->viewport() && event->type() == QEvent::Resize) fitColumns();
+  if (watched != cameras_) return QWidget::eventFilter(watched, event);
   if (event->type() != QEvent::KeyPress) return QWidget::eventFilter(watched, event);
   const auto& key = static_cast<const QKeyEvent&>(*event);
-  if (watched == cameras_ && (key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter)) {
+  if (key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter) {
     const std::optional<ViewIndex> view = viewOf(cameras_->currentItem());
     if (view) Q_EMIT cameraActivated(*view);
     return view.has_value();
@@ -299,6 +317,7 @@ void ProjectPanel::showProblems() {
     if (!texts.isEmpty()) tip += "\n\n" + texts.join("\n");
     for (const int column : {kName, kSize, kProblems}) (*it)->setToolTip(column, tip);
   }
+  fitColumns();
 }
 
 void ProjectPanel::mark(std::optional<ViewIndex> view) {

@@ -38,7 +38,6 @@ class ProjectPanel final : public QWidget {
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
-  void resizeEvent(QResizeEvent* event) override;
   void changeEvent(QEvent* event) override;
 
  private:
@@ -49,6 +48,7 @@ class ProjectPanel final : public QWidget {
   void fillCameras();
   void showProblems();
   void fitRows();
+  void fitColumns();
   std::optional<ViewIndex> viewOf(const QTreeWidgetItem* item) const;
 
   ProjectModel& model_;

@@ -115,7 +115,11 @@ QWidget* SettingsPanel::makeStagePage() {
   auto* column = new QVBoxLayout(page);
   column->setContentsMargins(10, 10, 4, 4);
   column->addLayout(preset_row);
+  auto* line = new QFrame;  // here the form scrolls on: a row that is cut lies under no words
+  line->setObjectName("line");
+  line->setFixedHeight(1);
   column->addWidget(scroll_, 1);
+  column->addWidget(line);
   column->addWidget(note_);
   return page;
 }

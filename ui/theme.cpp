@@ -27,7 +27,8 @@ Colors darkColors() {
   c.card = "#26292d", c.control = "#2d3035", c.control_edge = "#3d4148", c.hover = "#363a40";
   c.hover_edge = "#555b64", c.chosen = "#2f4a6b";
   c.text = "#d9dce1", c.strong = "#f0f2f5", c.muted = "#a7adb6", c.quiet = "#8d939c", c.disabled = "#6f757e";
-  c.accent = "#5b9bf0", c.primary = "#2f6cc0", c.primary_text = "#ffffff", c.selection = "#3d6fb4";
+  c.accent = "#5b9bf0", c.primary = "#2f6cc0", c.primary_text = "#ffffff", c.selection = "#3d6fb4",
+  c.progress = "#3d6fb4";
   c.done = "#6fbf73", c.failed = "#f0796c", c.warning = "#e0b35c", c.stale = "#d9a84e", c.running = "#5b9bf0";
   c.on_mark = "#15171a";
   c.lane_empty = "#363a40", c.lane_done = "#5b9a5f", c.lane_queued = "#40536d", c.lane_blocked = "#3c3527";
@@ -43,7 +44,8 @@ Colors lightColors() {
   c.card = "#f4f5f7", c.control = "#fbfcfd", c.control_edge = "#b9bec6", c.hover = "#dfe4ea";
   c.hover_edge = "#8d949e", c.chosen = "#c5dbf7";
   c.text = "#22262b", c.strong = "#0d0f12", c.muted = "#4a515a", c.quiet = "#5d646e", c.disabled = "#8f959e";
-  c.accent = "#1f6fd6", c.primary = "#2467bd", c.primary_text = "#ffffff", c.selection = "#3d6fb4";
+  c.accent = "#1f6fd6", c.primary = "#2467bd", c.primary_text = "#ffffff", c.selection = "#3d6fb4",
+  c.progress = "#85b5f0";
   c.done = "#2f8a3a", c.failed = "#c3392b", c.warning = "#8f6200", c.stale = "#a87400", c.running = "#1f6fd6";
   c.on_mark = "#ffffff";
   c.lane_empty = "#d3d7dc", c.lane_done = "#58a661", c.lane_queued = "#b7cbe6", c.lane_blocked = "#ddd2ba";
@@ -82,6 +84,7 @@ QPalette paletteOf(const Colors& c) {
   palette.setColor(QPalette::ToolTipBase, c.control);
   palette.setColor(QPalette::ToolTipText, c.strong);
   palette.setColor(QPalette::PlaceholderText, c.quiet);
+  palette.setColor(QPalette::Link, c.accent);  // the ring of a view, too
   return palette;
 }
 
@@ -117,6 +120,7 @@ std::map<QString, QString> wordsOfSheet(const Look& look, double scale) {
                                         {"primary_text", c.primary_text},
                                         {"focus_on_primary", c.strong},
                                         {"selection", c.selection},
+                                        {"progress", c.progress},
                                         {"failed", c.failed},
                                         {"error_back", c.error_back},
                                         {"error_edge", c.error_edge},

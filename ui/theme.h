@@ -17,8 +17,8 @@ enum class Theme { System, Dark, Light };
 struct Colors {
   QColor window, chrome, edge, field, inside, card, control, control_edge, hover, hover_edge, chosen;
   QColor text, strong, muted, quiet, disabled;
-  QColor accent, primary, primary_text, selection;
-  QColor done, failed, warning, stale, running, on_mark;  // `on_mark`: signs on a filled disc or bar
+  QColor accent, primary, primary_text, selection, progress;  // `progress`: under `strong`
+  QColor done, failed, warning, stale, running, on_mark;      // `on_mark`: signs on a filled disc or bar
   QColor lane_empty, lane_done, lane_queued, lane_blocked, lane_interpolated;
   QColor error_back, error_edge, error_text, notice_back, notice_edge, notice_text;
 };

@@ -16,6 +16,7 @@
 #include <functional>
 #include <map>
 
+#include "tests/support/painted_text.h"
 #include "tests/support/stand_in_studio.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/wait_for.h"
@@ -24,6 +25,8 @@
 #include "ui/main_window.h"
 #include "ui/stage_rail.h"
 #include "ui/theme.h"
+#include "ui/timeline_lanes.h"
+#include "ui/timeline_panel.h"
 #include "viewers/gl/functions.h"
 
 namespace beam {
@@ -91,6 +94,8 @@ class Fit : public ::testing::Test {
     report(faults_);
   }
 
+  TempDir folder_;
+
  private:
   void lookOpen(MainWindow& window) {
     for (const char* tab : {"Splats", "Images", "Scene", "Display"}) {
@@ -146,7 +151,6 @@ class Fit : public ::testing::Test {
     window.setUpdatesEnabled(true);
   }
 
-  TempDir folder_;
   QFont font_;
   double letters_ = 1;
   Faults faults_;
@@ -156,6 +160,20 @@ TEST_F(Fit, TheStartPageHasRoomForEverything) { lookAll(1, false); }
 TEST_F(Fit, TheStartPageHasRoomForLargeLetters) { lookAll(1.5, false); }
 TEST_F(Fit, TheOpenWindowHasRoomForEverything) { lookAll(1, true); }
 TEST_F(Fit, TheOpenWindowHasRoomForLargeLetters) { lookAll(1.5, true); }
+
+TEST_F(Fit, NamesOfTheTimelineAreWholeInLargeLetters) {
+  applyTheme(*qApp, Theme::Dark, 1.5);
+  {
+    MainWindow window(standInServices(), MainWindow::Layout::Fresh);
+    window.resize(1600, 1000);
+    window.show();
+    window.open(folder_ / "capture.beam");
+    ASSERT_TRUE(waitFor([&] { return window.model().isOpen() && window.settled(); }));
+    for (const PaintedText& text : paintedTexts(window.timeline().lanes()))
+      EXPECT_FALSE(text.text.endsWith("…")) << text.text.toStdString();
+  }
+  applyTheme(*qApp);
+}
 
 TEST(SmallScreen, TheWindowOpensInsideOfIt) {
   MainWindow window(standInServices(), MainWindow::Layout::Fresh);

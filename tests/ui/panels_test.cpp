@@ -169,6 +169,23 @@ TEST_F(Panels, CameraRowsCountTheirProblemsAndTellThem) {
   EXPECT_TRUE(cameras.row(1)->text(2).isEmpty());
 }
 
+TEST_F(Panels, TheSizesOfCamerasGiveWayButDoNotVanish) {
+  for (const double scale : {1.0, 1.5}) {
+    for (const int width : {220, 280, 400}) {
+      ProjectPanel panel(model);
+      show(panel, width, 600, scale);
+      QTreeWidget& tree = panel.cameras();
+      EXPECT_FALSE(tree.isColumnHidden(1));
+      const QFontMetrics metrics = tree.fontMetrics();
+      const int wanted =
+          width == 220 ? 5 * metrics.averageCharWidth() : metrics.horizontalAdvance("200 × 200");
+      EXPECT_GE(tree.columnWidth(1), wanted) << width << " x" << scale;
+      EXPECT_TRUE(tree.topLevelItem(0)->child(0)->toolTip(1).contains("200 × 200"));
+      panel.setParent(nullptr);
+    }
+  }
+}
+
 TEST_F(Panels, TheProjectPanelFitsWhereItIsNarrowAndLow) {
   for (const double scale : {1.0, 1.5}) {
     ProjectPanel panel(model);
@@ -267,6 +284,21 @@ TEST(Log, TellsARepeatedLineOnceWithItsCount) {
   EXPECT_FALSE(log.document()->findBlockByNumber(0).text().contains("×"));
 }
 
+TEST(Log, TellsInOrderAndByTheTitlesOfTheWindow) {
+  StageInfo surface;
+  surface.id = "surface";
+  surface.title = "Surface";
+  surface.steps = {{.id = "fit", .title = "Fit appearance"}};
+  LogPanel log;
+  log.setStages({surface});
+  logInfo("surface.fit, frame 000000 done in 2.0 s");
+  log.add(LogLevel::Info, "Done in 31 s");
+  const auto line = [&](int i) { return log.document()->findBlockByNumber(i).text(); };
+  ASSERT_EQ(log.document()->blockCount(), 2);
+  EXPECT_TRUE(line(0).contains("Surface: fit appearance, frame 000000 done")) << line(0).toStdString();
+  EXPECT_TRUE(line(1).contains("Done in 31 s")) << line(1).toStdString();
+}
+
 TEST(Log, KeepsTheNewestInViewUnlessAPersonScrolledUp) {
   LogPanel log;
   for (int i = 0; i < 200; ++i) log.add(LogLevel::Info, QString("line %1").arg(i));  // while it is hidden
@@ -346,6 +378,7 @@ TEST(Theme, TextIsLegibleOnItsGround) {
     EXPECT_GE(contrast(c.error_text, c.error_back), 4.5);
     EXPECT_GE(contrast(c.notice_text, c.notice_back), 4.5);
     EXPECT_GE(contrast(c.primary_text, c.primary), 4.5);
+    for (const QColor& ground : {c.progress, c.edge}) EXPECT_GE(contrast(c.strong, ground), 4.5);
   }
   applyTheme(application);
   application.setStyleSheet({});
