@@ -22,13 +22,24 @@ namespace {
 constexpr float kDegrees = 180 / kPi;
 constexpr float kStopsPerTick = 0.25f;
 
-const char* const kHands =
+// By view.
+const char* const kHands[] = {
     "Left drag orbits, middle drag pans, the wheel zooms to the pointer, a double-click sets the point to "
     "circle.\n"
     "F frames the subject, H goes home. 1, 3 and 7 of the number pad look from the front, the right and the "
     "top, with Ctrl from the other side.\n"
     "Shift and right drag turn the light. E and Shift+E change the exposure, R resets it.\n"
-    "[ and ] look through the cameras, Esc leaves; the wheel then fades the photograph.";
+    "[ and ] look through the cameras, Esc leaves; the wheel then fades the photograph.",
+    "A drag moves the picture, the wheel zooms to the pointer, F or a double-click fits it into the view.\n"
+    "W wipes between A and B: drag the line. D shows their difference, T swaps them, and while Shift is held "
+    "B is seen alone.\n"
+    "E and Shift+E change the exposure of photographs and renders, R resets it.",
+    "Left drag orbits, middle drag pans, the wheel zooms to the pointer, a double-click sets the point to "
+    "circle.\n"
+    "A press marks a camera, a double-click looks through it, and so do [ and ]; Esc leaves.\n"
+    "F frames the subject, H goes home. 1, 3 and 7 of the number pad look from the front, the right and the "
+    "top, with Ctrl from the other side.\n"
+    "K, G and J show and hide cameras, grid and joints."};
 
 // The wheel scrolls the panel unless the slider was chosen.
 class QuietSlider final : public QSlider {
@@ -50,6 +61,12 @@ QLabel* quiet() {
   label->setObjectName("quiet");
   label->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   return label;
+}
+
+// `why_not`: why it cannot be used; empty: it can.
+void allow(QWidget& widget, const QString& why_not, const QString& tip) {
+  widget.setEnabled(why_not.isEmpty());
+  widget.setToolTip(why_not.isEmpty() ? tip : why_not);
 }
 
 // The name above what it names, the value at the end of the name's line: nothing is cut in a narrow panel.
@@ -79,6 +96,7 @@ DisplayPanel::DisplayPanel(SplatView& view, LightLibrary& lights, QWidget* paren
       yaw_words_(quiet()),
       exposure_words_(quiet()),
       photo_words_(quiet()),
+      hands_(new QLabel(kHands[0])),
       sky_(new QCheckBox("Show panorama")),
       lock_depth_(new QCheckBox("Lock depth limits")),
       open_(new QPushButton("Open panorama…")) {
@@ -92,9 +110,8 @@ DisplayPanel::DisplayPanel(SplatView& view, LightLibrary& lights, QWidget* paren
 }
 
 void DisplayPanel::makeRows() {
-  auto* hands = new QLabel(kHands);
-  hands->setObjectName("quiet");
-  hands->setWordWrap(true);
+  hands_->setObjectName("quiet");
+  hands_->setWordWrap(true);
   auto* inside = new QWidget;
   auto* rows = new QVBoxLayout(inside);
   rows->setContentsMargins(8, 8, 8, 8);
@@ -108,7 +125,7 @@ void DisplayPanel::makeRows() {
   rows->addWidget(sky_);
   rows->addWidget(lock_depth_);
   rows->addSpacing(8);
-  rows->addWidget(hands);
+  rows->addWidget(hands_);
   rows->addStretch();
   auto* scroll = new QScrollArea;
   scroll->setWidgetResizable(true);
@@ -144,16 +161,25 @@ void DisplayPanel::mirror(const ViewState& state) {
   yaw_->setValue(static_cast<int>(std::lround(state.yaw_rad * kDegrees)));
   exposure_->setValue(static_cast<int>(std::lround(state.exposure_stops / kStopsPerTick)));
   photo_->setValue(static_cast<int>(std::lround(100 * state.photo_opacity)));
-  photo_->setEnabled(state.look_through.has_value());
-  photo_->setToolTip(state.look_through
-                         ? "How much of the photograph lies over the render"
-                         : "Look through a camera ([ or ]) to lay its photograph over the render.");
+  const QString not_used = notUsed();
+  channel_->setEnabled(not_used.isEmpty());
+  channel_->setHelp(not_used.isEmpty() ? QString("What is shown of the Gaussians (1 to 7)") : not_used);
+  allow(*exposure_, shown_ == StudioView::Scene ? not_used : QString(),
+        "Of light and photographs (E, Shift+E; R resets it)");
+  allow(*photo_,
+        !not_used.isEmpty() ? not_used
+        : state.look_through
+            ? QString()
+            : QString("Look through a camera first ([ and ]): its photograph is laid over the render."),
+        "How much of the photograph lies over the render");
   sky_->setChecked(state.sky);
   const bool depth = state.channel == Channel::Depth;
-  lock_depth_->setEnabled(depth);
   lock_depth_->setChecked(state.depth_limits.has_value());
-  lock_depth_->setToolTip(depth ? "Keep these limits of the colours while camera and frame change"
-                                : "Choose the channel Depth first: its colours have limits to keep.");
+  allow(*lock_depth_,
+        !not_used.isEmpty() ? not_used
+        : depth             ? QString()
+                            : QString("Choose the channel Depth first: its colours have limits to keep."),
+        "Keep these limits of the colours while camera and frame change");
   yaw_words_->setText(QString("%1°").arg(yaw_->value()));
   exposure_words_->setText(QString::asprintf("%+.2f stops", state.exposure_stops));
   photo_words_->setText(QString("%1 %").arg(photo_->value()));
@@ -169,18 +195,47 @@ void DisplayPanel::fillLights() {
     light_->addItems(names);
   }
   light_->setCurrentIndex(lights_.chosen());
-  light_->setEnabled(!names.isEmpty());
   light_->setPlaceholderText(names.isEmpty() ? "none" : "none chosen");
-  light_->setHelp(names.isEmpty()     ? "There is no panorama yet: open one below."
+  allowLights();
+}
+
+void DisplayPanel::allowLights() {
+  const QString not_used = notUsed(), unlit = shown_ == StudioView::Scene ? not_used : QString();
+  const bool any = light_->count() > 0, lit = lights_.light() != nullptr || lights_.reading();
+  light_->setEnabled(any && unlit.isEmpty());
+  light_->setHelp(!unlit.isEmpty()    ? unlit
+                  : !any              ? "There is no panorama yet: open one below."
                   : lights_.reading() ? "reading the light"
                                       : "The panorama that lights the subject");
-  const bool lit = lights_.light() != nullptr || lights_.reading();
-  yaw_->setEnabled(lit);
-  sky_->setEnabled(lit);
-  yaw_->setToolTip(lit ? "Turns the panorama about the vertical"
-                       : "There is no light to turn: choose or open a panorama.");
-  sky_->setToolTip(lit ? "Behind the subject, in Lit, Radiance and Base colour"
-                       : "There is no panorama to show: choose or open one.");
+  allow(*yaw_,
+        !unlit.isEmpty() ? unlit
+        : lit            ? QString()
+                         : QString("There is no light to turn: choose or open a panorama."),
+        "Turns the panorama about the vertical");
+  allow(*sky_,
+        !not_used.isEmpty() ? not_used
+        : lit               ? QString()
+                            : QString("There is no panorama to show: choose or open one."),
+        "Behind the subject, in Lit, Radiance and Base colour");
+}
+
+QString DisplayPanel::notUsed() const {
+  switch (shown_) {
+    case StudioView::Splat:
+      break;
+    case StudioView::Image:
+      return "The view Images shows what A and B above it choose.";
+    case StudioView::Scene:
+      return "The view Scene shows where things are, in colours of its own.";
+  }
+  return {};
+}
+
+void DisplayPanel::setShown(StudioView shown) {
+  shown_ = shown;
+  hands_->setText(kHands[static_cast<int>(shown)]);
+  mirror(view_.state());
+  allowLights();
 }
 
 }  // namespace beam

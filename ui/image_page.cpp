@@ -313,7 +313,7 @@ void ImagePage::showPicture(int side) {
       shown_[side] && shown_[side]->id == source->id && shown_[side]->made_of == source->made_of;
   if (there && view_->note(side).isEmpty()) return;
   shown_[side] = Shown{source->id, source->made_of};
-  view_->setPicture(side, source->title, source->loader);
+  view_->setPicture(side, source->title, source->loader, source->of_values);
 }
 
 void ImagePage::mirrorLegend() {

@@ -39,6 +39,7 @@
 #include "ui/stage_rail.h"
 #include "ui/start_page.h"
 #include "ui/timeline_panel.h"
+#include "ui/words.h"
 #include "viewers/image/image_view.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
@@ -208,20 +209,21 @@ void MainWindow::makeDocks() {
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
   project_panel_ = new ProjectPanel(model_);
   settings_ = new SettingsPanel(model_);
-  auto* display = new DisplayPanel(*splat_, lights_);
-  connect(display, &DisplayPanel::openLightWanted, commands_.action("open_light"), &QAction::trigger);
+  display_ = new DisplayPanel(*splat_, lights_);
+  connect(display_, &DisplayPanel::openLightWanted, commands_.action("open_light"), &QAction::trigger);
   inspector_ = new QTabWidget;
   inspector_->setDocumentMode(true);
   inspector_->tabBar()->setDrawBase(false);
-  inspector_->addTab(display, "Display");
+  inspector_->addTab(display_, "Display");
   inspector_->addTab(settings_, "Settings");
-  inspector_->setTabToolTip(0, "How the splat view shows: channel, light, exposure");
+  inspector_->setTabToolTip(0, "How the view that is seen shows: channel, light, exposure");
   inspector_->setTabToolTip(1, "The settings of the chosen stage");
   connect(rail_, &StageRail::chosen, this, [this](const std::string& stage) {
     if (!settings_->setStage(stage)) rail_->select(settings_->stage());
     inspector_->setCurrentWidget(settings_);
   });
   log_ = new LogPanel;
+  log_->setStages(services_.pipeline->stages.infos());
   dock("project", "Project", project_panel_, Qt::LeftDockWidgetArea);
   QDockWidget* inspector = dock("inspector", "Inspector", inspector_, Qt::RightDockWidgetArea);
   connect(settings_, &SettingsPanel::attentionWanted, inspector_, [this, inspector] {
@@ -300,6 +302,20 @@ bool MainWindow::event(QEvent* event) {
     return true;
   }
   return QMainWindow::event(event);
+}
+
+// A dock behind the tab of another one is shown, for Qt, but far outside of the window: nobody would see that
+// it has the focus.
+bool MainWindow::focusNextPrevChild(bool next) {
+  const auto behind_a_tab = [this](const QWidget* widget) {
+    while (widget && !qobject_cast<const QDockWidget*>(widget)) widget = widget->parentWidget();
+    return widget && !widget->isWindow() && !widget->geometry().intersects(rect());
+  };
+  const QWidget* const first = focusWidget();
+  do {
+    if (!QMainWindow::focusNextPrevChild(next)) return false;
+  } while (focusWidget() != first && behind_a_tab(focusWidget()));
+  return true;
 }
 
 // Keys that no text field or list took go to the view that is seen.
@@ -402,7 +418,8 @@ void MainWindow::tellOfFault(const QString& what) {
       what + " What is finished is on disk; save the settings and start the program anew.");
 }
 
-void MainWindow::say(const QString& title, const QString& text, QAction* remedy) {
+void MainWindow::say(const QString& title, const QString& told, QAction* remedy) {
+  const QString text = withStepTitles(services_.pipeline->stages.infos(), told);
   message_->show(MessagePanel::Kind::Error, title, text, remedy);
   log_->add(LogLevel::Error, title + ": " + text);
   problems_.add(problemOf(Problem::Kind::Error, title + ": " + text));

@@ -19,6 +19,7 @@
 #include "ui/run_forecast.h"
 #include "ui/scout_dialog.h"
 #include "ui/session_memory.h"
+#include "ui/studio_view.h"
 #include "ui/theme.h"
 #include "ui/timeline_lanes.h"
 #include "viewers/view_state.h"
@@ -32,6 +33,7 @@ class QTabWidget;
 
 namespace beam {
 
+class DisplayPanel;
 class ElidedLabel;
 class ImagePage;
 class LogPanel;
@@ -45,7 +47,6 @@ class StageRail;
 class StartPage;
 class TimelinePanel;
 
-enum class StudioView { Splat, Image, Scene };
 enum class RunScope { Frame, Range, Take, Scout };
 std::optional<RunScope> runScopeNamed(std::string_view name);      // "frame", "range", "take", "scout"
 std::optional<StudioView> studioViewNamed(std::string_view name);  // "splat", "image", "scene"
@@ -97,6 +98,7 @@ class MainWindow final : public QMainWindow {
 
  protected:
   bool event(QEvent* event) override;
+  bool focusNextPrevChild(bool next) override;
   void keyPressEvent(QKeyEvent* event) override;
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
@@ -195,7 +197,7 @@ class MainWindow final : public QMainWindow {
   void showValues();
   void showValuesIn(StudioView view);
   void showSplats();
-  void showBadge(const QString& badge);
+  void lightImages();
   void showCamera(ViewIndex view);
   void showPlaying();
   StudioView shownView() const;
@@ -206,7 +208,7 @@ class MainWindow final : public QMainWindow {
   void showTitle();
   void showStatus();
   // `remedy`: a command that helps.
-  void say(const QString& title, const QString& text, QAction* remedy = nullptr);
+  void say(const QString& title, const QString& told, QAction* remedy = nullptr);
   // What it said is mended.
   void unsay(const QStringList& titles);
   void warn(const QString& text);
@@ -250,6 +252,7 @@ class MainWindow final : public QMainWindow {
   SceneView* scene_ = nullptr;
   ProjectPanel* project_panel_ = nullptr;
   QTabWidget* inspector_ = nullptr;
+  DisplayPanel* display_ = nullptr;
   SettingsPanel* settings_ = nullptr;
   LogPanel* log_ = nullptr;
   QDockWidget* problems_dock_ = nullptr;

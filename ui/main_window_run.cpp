@@ -10,6 +10,7 @@
 #include "ui/settings_panel.h"
 #include "ui/stage_rail.h"
 #include "ui/timeline_panel.h"
+#include "ui/words.h"
 #include "viewers/scene/scene_view.h"
 #include "viewers/splat/splat_view.h"
 
@@ -166,7 +167,8 @@ void MainWindow::showFinished(const JobFinished& outcome) {
   }
   log_->add(LogLevel::Info, run_bar_->text());
   QStringList notes;
-  for (const std::string& note : outcome.notes) notes << QString::fromStdString(note);
+  for (const std::string& note : outcome.notes)
+    notes << withStepTitles(services_.pipeline->stages.infos(), QString::fromStdString(note));
   if (!notes.isEmpty() && !outcome.at_rest)
     message_->show(MessagePanel::Kind::Notice, "Left out", notes.join("\n"));
   settings_->setRunning(false);

@@ -4,8 +4,10 @@
 #include <QStackedWidget>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "ui/display_panel.h"
 #include "ui/elided_label.h"
 #include "ui/image_page.h"
 #include "ui/log_panel.h"
@@ -74,7 +76,7 @@ void MainWindow::connectModel() {
   connect(&forecast_, &RunForecast::told, this, &MainWindow::showForecast);
   connect(&lights_, &LightLibrary::lightChanged, this, [this] {
     splat_->setLight(lights_.light(), lights_.name(), lights_.reading());
-    images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading(), lights_.name()});
+    lightImages();
   });
   connect(&lights_, &LightLibrary::failed, this,
           [this](const QString& what, const QString& why) { say(what, why); });
@@ -128,9 +130,9 @@ void MainWindow::showProblems() {
 
 void MainWindow::connectViews() {
   connect(views_, &QStackedWidget::currentChanged, this, [this] {
-    // The light may have been turned since; and a view that is not seen does not follow the frames.
-    if (views_->currentWidget() == images_)
-      images_->setLight({lights_.light(), splat_->state().yaw_rad, lights_.reading(), lights_.name()});
+    // Light and exposure may be others since; and a view that is not seen does not follow the frames.
+    if (shownView() == StudioView::Image) lightImages();
+    display_->setShown(shownView());
     showValuesIn(shownView());
     refreshCommands();
   });
@@ -143,11 +145,13 @@ void MainWindow::connectViews() {
   connect(splat_, &SplatView::hovered, reading_, &ElidedLabel::setText);
   connect(splat_, &SplatView::pictureShown, this, &MainWindow::showStatus);
   connect(&images_->view(), &ImageView::hovered, reading_, &ElidedLabel::setText);
+  connect(&images_->view(), &ImageView::exposureChanged, splat_, &SplatView::setExposure);
   // Every move of the hand tells of a state; of what it holds only the channel matters to commands, which
   // look at the disk.
   connect(splat_, &SplatView::stateChanged, this,
           [this, channel = splat_->state().channel](const ViewState& state) mutable {
             if (std::exchange(channel, state.channel) != state.channel) commands_.refresh();
+            if (shownView() == StudioView::Image) lightImages();
             if (state.look_through == looked_through_) return;
             looked_through_ = state.look_through;
             if (looked_through_) showCamera(*looked_through_);
@@ -189,7 +193,10 @@ void MainWindow::connectJob() {
         QString::fromStdString(failure.message));
     model_.refresh();
   });
-  const auto note = [this](const QString& text) { problems_.add(problemOf(Problem::Kind::Warning, text)); };
+  const auto note = [this](const QString& text) {
+    problems_.add(
+        problemOf(Problem::Kind::Warning, withStepTitles(services_.pipeline->stages.infos(), text)));
+  };
   connect(&job_, &JobBridge::warned, this, note);  // the log has it from where it was said
   connect(log_, &LogPanel::warned, this, [this, note](const QString& text) {
     if (!job_.busy()) note(text);  // a run tells of its own
@@ -270,27 +277,30 @@ void MainWindow::showValuesIn(StudioView view) {
   }
 }
 
-void MainWindow::showBadge(const QString& badge) {
-  splat_->setBadge(badge);
-  images_->view().setBadge(badge);
+// As the splat view is lit and exposed; both scale photographs and renders alike.
+void MainWindow::lightImages() {
+  const ViewState& state = splat_->state();
+  images_->setLight({lights_.light(), state.yaw_rad, lights_.reading(), lights_.name()});
+  images_->view().setExposure(state.exposure_stops);
 }
 
 void MainWindow::showSplats() {
   if (!model_.isOpen()) return;
   const FrameValues& values = model_.values();
+  images_->view().setBadge(staleWords(values));  // which shows neither previews nor held frames
   if (previewWins()) {
-    showBadge(preview_.live ? "live preview" : "preview of the run that was stopped");
+    splat_->setBadge(preview_.live ? "live preview" : "preview of the run that was stopped");
     return splat_->setScene(
         {preview_.cloud, nullptr},
         QString("frame %1 · %2").arg(model_.frameName(), countText(preview_.cloud->size(), "Gaussian")));
   }
   if (const auto& held = model_.held()) {
     const QString from = QString::fromStdString(model_.capture()->frames[held->from.value]);
-    showBadge(staleWords(held->values));
+    splat_->setBadge(staleWords(held->values));
     return splat_->setScene({held->values.cloud, held->values.materials},
                             QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));
   }
-  showBadge(staleWords(values));
+  splat_->setBadge(staleWords(values));
   splat_->setScene({values.cloud, values.materials},
                    "frame " + model_.valuesFrameName() + (values.interpolated ? ", interpolated" : ""));
 }
@@ -314,7 +324,7 @@ void MainWindow::showStatus() {
   if (model_.isOpen())
     parts << "frame " + model_.frameName() + (model_.values().interpolated ? ", interpolated" : "");
   if (model_.values().cloud) {
-    parts << QString("drawn in %1 ms").arg(splat_->fullPictureMilliseconds(), 0, 'f', 0);
+    parts << QString("drawn in %1 ms").arg(numberText(std::llround(splat_->fullPictureMilliseconds())));
   }
   parts << QString::fromStdString(services_.view_device->info().title);
   state_words_->setText(parts.join("   ·   "));

@@ -137,7 +137,7 @@ void addRenders(std::vector<PictureSource>& sources, const Shot& shot, const Pro
       made_of.reading = light.reading;
     }
     sources.push_back({QString("render.") + info.name, QString("Rendered: ") + info.title, made_of,
-                       [render, channel] { return renderedOf(render, channel); }});
+                       [render, channel] { return renderedOf(render, channel); }, true});
   }
 }
 

@@ -30,6 +30,7 @@ struct PictureSource {
   QString title;  // "Photograph"
   PictureIngredients made_of;
   PictureLoader loader;
+  bool of_values = false;  // made of the model's values: what is said of these (stale) is true of it
 };
 
 // A light for the rendered "lit" picture; may be null, and then `reading` says whether it is on its way.

@@ -217,6 +217,28 @@ TEST_F(ImageJudging, ForgetsWhatBelongedToTheProjectBefore) {
   EXPECT_FALSE(view.legend().locked);
 }
 
+TEST_F(ImageJudging, TheBadgeStandsOverWhatItIsTrueOfAlone) {
+  const auto photo = [] { return pictureOf(Image<vec3>(40, 30, vec3(0.4f), Encoding::Srgb), "Photograph"); };
+  view.setBadge("stale: made with other settings");
+  view.setPicture(0, "A", photo, false);
+  view.setPicture(1, "B", photo, true);
+  const auto badge = [&] {
+    EXPECT_TRUE(settle());
+    view.picture();
+    return view.words().badge;
+  };
+  EXPECT_TRUE(badge().isEmpty());
+  view.setWipe(true);
+  EXPECT_GE(badge().left(), view.width() / 2);
+  view.swapSides();
+  EXPECT_LE(badge().right(), view.width() / 2);
+  EXPECT_FALSE(badge().isEmpty());
+  view.setDifference(true);
+  EXPECT_FALSE(badge().isEmpty()) << "a difference is of both";
+  view.setPicture(0, "A", photo, false);
+  EXPECT_TRUE(badge().isEmpty());
+}
+
 TEST_F(ImageJudging, KeepsItsWordsInsideANarrowViewWithLargeTypeAndOffTheLegend) {
   QFont large = view.font();
   large.setPointSizeF(1.5 * large.pointSizeF());

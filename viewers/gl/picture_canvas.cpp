@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/gl/picture_canvas.h"
+#include "viewers/focus_ring.h"
 
 #include <QOpenGLPaintDevice>
 #include <QPainter>
@@ -71,6 +72,19 @@ void PictureCanvas::paintGL() {
   painter.setRenderHint(QPainter::TextAntialiasing);
   words_ = {};
   paintOver(painter);
+  if (ring_) paintFocusRing(painter, *this);
+}
+
+void PictureCanvas::focusInEvent(QFocusEvent* event) {
+  QOpenGLWidget::focusInEvent(event);
+  ring_ = cameByKey(*event);
+  update();
+}
+
+void PictureCanvas::focusOutEvent(QFocusEvent* event) {
+  QOpenGLWidget::focusOutEvent(event);
+  ring_ = false;
+  update();
 }
 
 void PictureCanvas::setBadge(const QString& badge) {
@@ -87,13 +101,14 @@ double PictureCanvas::columnWidth() const {
 void PictureCanvas::paintWords(QPainter& painter, const QString& title, const QString& foot) {
   words_.title = paintLabel(painter, {kMargin_px, kMargin_px}, Qt::AlignLeft | Qt::AlignTop, title,
                             {.width_px = columnWidth()});
-  paintBadge(painter, words_.title.bottom());
+  paintBadge(painter, words_.title.bottom(), 0, width());
   paintFoot(painter, foot);
 }
 
-void PictureCanvas::paintBadge(QPainter& painter, double top_px) {
-  words_.badge = paintLabel(painter, {kMargin_px, top_px + kGap_px}, Qt::AlignLeft | Qt::AlignTop, badge_,
-                            {.width_px = columnWidth(), .tone = LabelTone::Warning});
+void PictureCanvas::paintBadge(QPainter& painter, double top_px, double left_px, double right_px) {
+  const double room = std::min(columnWidth(), right_px - left_px - 2 * kMargin_px);
+  words_.badge = paintLabel(painter, {left_px + kMargin_px, top_px + kGap_px}, Qt::AlignLeft | Qt::AlignTop,
+                            badge_, {.width_px = room, .tone = LabelTone::Warning});
 }
 
 void PictureCanvas::paintFoot(QPainter& painter, const QString& foot) {

@@ -56,8 +56,9 @@ class PictureCanvas : public QOpenGLWidget {
   double columnWidth() const;
   // The title in the upper left corner with the badge under it, and a note in the lower left one.
   void paintWords(QPainter& painter, const QString& title, const QString& foot);
-  // The badge alone, for views that place their titles themselves; `top_px` is where they end.
-  void paintBadge(QPainter& painter, double top_px);
+  // The badge alone, for views that place their titles themselves; `top_px` is where they end, and from
+  // `left_px` to `right_px` is that of which it is true.
+  void paintBadge(QPainter& painter, double top_px, double left_px, double right_px);
   void paintFoot(QPainter& painter, const QString& foot);
   // The legend of false colours in the right column, clear of the words painted before.
   void paintLegend(QPainter& painter, const Limits& limits, const QString& unit);
@@ -65,6 +66,8 @@ class PictureCanvas : public QOpenGLWidget {
 
   void initializeGL() override;
   void paintGL() override;
+  void focusInEvent(QFocusEvent* event) override;
+  void focusOutEvent(QFocusEvent* event) override;
 
  private:
   std::array<SharedPicture, 2> pictures_;
@@ -72,6 +75,7 @@ class PictureCanvas : public QOpenGLWidget {
   std::array<Texture, 2> textures_;
   std::unique_ptr<QuadPainter> quads_;
   QString badge_;
+  bool ring_ = false;  // the focus came by the keyboard
   WordBoxes words_;
 };
 

@@ -38,7 +38,8 @@ void setLock(std::map<std::string, Limits>& locks, const std::string& unit, std:
 ImageView::ImageView(QWidget* parent) : PictureCanvas(parent) {}
 ImageView::~ImageView() = default;
 
-void ImageView::setPicture(int side, const QString& label, PictureLoader loader) {
+void ImageView::setPicture(int side, const QString& label, PictureLoader loader, bool badged) {
+  sides_[side].badged = badged;
   sides_[side].label = label;
   sides_[side].note.clear();
   sides_[side].loader = std::move(loader);
@@ -175,9 +176,12 @@ void ImageView::setDifference(bool on) {
 }
 
 void ImageView::setExposure(float stops) {
-  exposure_stops_ = std::clamp(stops, -10.0f, 10.0f);
+  const float bounded = std::clamp(stops, -10.0f, 10.0f);
+  if (bounded == exposure_stops_) return;
+  exposure_stops_ = bounded;
   refresh(0);
   refresh(1);
+  Q_EMIT exposureChanged(bounded);
 }
 
 void ImageView::fit() {
@@ -192,6 +196,7 @@ void ImageView::swapSides() {
   std::swap(sides_[0].pixels, sides_[1].pixels);
   std::swap(sides_[0].limits, sides_[1].limits);
   std::swap(sides_[0].note, sides_[1].note);
+  std::swap(sides_[0].badged, sides_[1].badged);
   refresh(0);
   refresh(1);
   compare();
@@ -325,7 +330,6 @@ void ImageView::paintOver(QPainter& painter) {
     } else {
       paintMessage(painter, area, "This picture cannot be shown", foot);
     }
-    paintBadge(painter, 0);
     return;
   }
   if (showsWipe() && !peek_) {
@@ -350,13 +354,16 @@ void ImageView::paintTitles(QPainter& painter) {
     const QRectF right = paintLabel(painter, {x + kBeside_px, kBeside_px}, Qt::AlignLeft | Qt::AlignTop,
                                     sideText(1), {.width_px = width() - x - 2 * kBeside_px});
     titleIs(left | right);
-    return paintBadge(painter, (left | right).bottom());
+    if (sides_[0].badged || sides_[1].badged)
+      paintBadge(painter, (left | right).bottom(), sides_[0].badged ? 0 : x, sides_[1].badged ? width() : x);
+    return;
   }
   const int side = peek_ || !sides_[0].picture ? 1 : 0;
   const QString title = apart() && !peek_ ? "|A − B| · " + pairText() + "\n" + verdict() : sideText(side);
   titleIs(paintLabel(painter, {kBeside_px, kBeside_px}, Qt::AlignLeft | Qt::AlignTop, title,
                      {.width_px = columnWidth()}));
-  paintBadge(painter, words().title.bottom());
+  if (sides_[side].badged || (apart() && !peek_ && sides_[1].badged))
+    paintBadge(painter, words().title.bottom(), 0, width());
 }
 
 }  // namespace beam

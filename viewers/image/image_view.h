@@ -30,7 +30,8 @@ class ImageView final : public PictureCanvas {
 
   // `side` 0 = A, 1 = B. An empty loader takes the picture away. `label` is shown until the picture brings
   // its own.
-  void setPicture(int side, const QString& label, PictureLoader loader);
+  // `badged`: what the badge tells is true of it.
+  void setPicture(int side, const QString& label, PictureLoader loader, bool badged = true);
   // Wipe and difference take turns: either takes the other away.
   void setWipe(bool on);
   bool wipe() const { return wipe_on_; }
@@ -60,6 +61,7 @@ class ImageView final : public PictureCanvas {
   void hovered(const QString& reading);
   void wipeChanged(bool on);
   void differenceChanged(bool on);
+  void exposureChanged(float stops);
   void sidesSwapped();
   void legendChanged();
   void pictureShown();
@@ -85,6 +87,7 @@ class ImageView final : public PictureCanvas {
     SharedPicture pixels;
     Limits limits;                       // of `pixels`, where these are false colours
     std::uint64_t ticket = 0, seen = 0;  // asked for last, answered last
+    bool badged = true;
   };
   struct Answer {
     std::shared_ptr<const Picture> picture;

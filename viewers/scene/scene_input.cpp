@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "viewers/focus_ring.h"
 #include "viewers/scene/scene_state.h"
 #include "viewers/splat/splat_view.h"
 #include "viewers/view_keys.h"
@@ -208,6 +209,10 @@ bool SceneView::eventFilter(QObject* watched, QEvent* event) {
     case QEvent::Resize:
       s.labels->resize(static_cast<QResizeEvent*>(event)->size());
       s.render_timer.start();
+      return false;
+    case QEvent::FocusIn:
+    case QEvent::FocusOut:
+      s.labels->setRing(event->type() == QEvent::FocusIn && cameByKey(*static_cast<QFocusEvent*>(event)));
       return false;
     case QEvent::MouseButtonPress:
     case QEvent::MouseMove:

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "viewers/false_color.h"
+#include "viewers/focus_ring.h"
 #include "viewers/scene/scene_state.h"
 
 namespace beam {
@@ -41,12 +42,18 @@ SceneLabels::SceneLabels(const SceneView::State& state, QWidget* parent) : QWidg
   setFocusPolicy(Qt::NoFocus);
 }
 
+void SceneLabels::setRing(bool shown) {
+  ring_ = shown;
+  update();
+}
+
 void SceneLabels::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   paintAxisNames(painter);
   paintLookThrough(painter);
   paintMarkedName(painter);
+  if (ring_) paintFocusRing(painter, *this);
   if (!state_.influenceFits() || state_.picked_joint < 0) return;
   paintPickedJoint(painter);
   paintLegend(painter);

@@ -74,11 +74,13 @@ Bounds subjectBounds(const std::vector<vec3>& positions_m) {
 }
 
 void SceneView::State::updateFacts() {
-  QStringList words{"world axes, +Y up, metres"};
-  for (const QString& count : counts) {
-    if (!count.isEmpty()) words << count;
+  // What is still to do, or can be pressed, goes first: the end is cut in a narrow view.
+  QStringList words{joint_hint, counts[static_cast<int>(SceneLayer::Joints)]};
+  for (int i = 0; i < kSceneLayerCount; ++i) {
+    if (i != static_cast<int>(SceneLayer::Joints)) words << counts[i];
   }
-  if (!joint_hint.isEmpty()) words << joint_hint;
+  words << "world axes, +Y up, metres";
+  words.removeAll(QString());
   facts->setWords(words.join(" · "));
 }
 

@@ -37,6 +37,8 @@ QString counted(std::size_t count, const QString& thing);
 // Middle and radius of the densest part; also a third of the points far away do not count.
 Bounds subjectBounds(const std::vector<vec3>& positions_m);
 
+class SceneLabels;
+
 struct SceneView::State {
   explicit State(SceneView& o) : owner(o) {}
 
@@ -85,7 +87,7 @@ struct SceneView::State {
 
   SceneView& owner;
   QVTKOpenGLNativeWidget* vtk = nullptr;
-  QWidget* labels = nullptr;  // over the picture
+  SceneLabels* labels = nullptr;  // over the picture
   WrappingRow* button_row = nullptr;
   ElidedLine* facts = nullptr;
   std::array<QToolButton*, kSceneLayerCount> toggles{};
@@ -125,6 +127,7 @@ struct SceneView::State {
 class SceneLabels final : public QWidget {
  public:
   SceneLabels(const SceneView::State& state, QWidget* parent);
+  void setRing(bool shown);  // the focus of the view came by the keyboard
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -137,6 +140,7 @@ class SceneLabels final : public QWidget {
   void paintLookThrough(QPainter& painter) const;
 
   const SceneView::State& state_;
+  bool ring_ = false;
 };
 
 }  // namespace beam

@@ -382,7 +382,7 @@ void SplatView::paintOver(QPainter& painter) {
     } else {
       paintMessage(painter, rect(), "No Gaussians yet", "Press Run to compute them from the photographs.");
     }
-    paintBadge(painter, 0);
+    paintBadge(painter, 0, 0, width());
     return;
   }
   if (state_.look_through && capture_) {
