@@ -83,7 +83,6 @@ ImagePage::ImagePage(const ProjectModel& model, QWidget* parent)
   column->addWidget(rows_);
   column->addWidget(view_, 1);
   connectParts();
-  arrangeRows();
   mirrorLegend();
   refuseWhatIsNotThere();
 }
@@ -91,16 +90,19 @@ ImagePage::ImagePage(const ProjectModel& model, QWidget* parent)
 QWidget* ImagePage::makeChoice() {
   auto* widget = new QWidget;
   choice_layout_ = rowIn(widget);
-  const auto add = [this](const QString& words, QuietCombo* box, int stretch) {
+  const auto add = [](QBoxLayout* layout, const QString& words, QuietCombo* box, int stretch) {
     auto* pair = new QWidget;
     QHBoxLayout* row = rowIn(pair);
     row->addWidget(quiet(words));
     row->addWidget(box, 1);
-    choice_layout_->addWidget(pair, stretch);
+    layout->addWidget(pair, stretch);
   };
-  add("Camera", cameras_, 1);
-  add("A", pictures_[0], 2);
-  add("B", pictures_[1], 2);
+  add(choice_layout_, "Camera", cameras_, 1);
+  auto* sides = new QWidget;
+  QHBoxLayout* row = rowIn(sides);
+  add(row, "A", pictures_[0], 1);
+  add(row, "B", pictures_[1], 1);
+  choice_layout_->addWidget(sides, 4);
   return widget;
 }
 
@@ -189,6 +191,8 @@ void ImagePage::arrangeRows() {
   choice_layout_->setDirection(direction(choice));
   row_layout_->setDirection(direction(choice + names + kSpacing_px + judging));
   judging_layout_->setDirection(direction(judging));
+  // A row of its own is worth its height only where there are false colours.
+  holding_->setVisible(view_->legend().shown || judging_layout_->direction() == QBoxLayout::LeftToRight);
 }
 
 void ImagePage::setLight(const PictureLight& light) {
@@ -337,6 +341,7 @@ void ImagePage::mirrorLegend() {
     limits_[i]->setText(legend.shown ? QString::number(value, 'g', 4) : QString());
     markWrong(limits_[i], false);
   }
+  arrangeRows();
 }
 
 void ImagePage::takeLimits() {

@@ -345,7 +345,8 @@ void describe(Fields& f, TrackJointsOptions& o) {
           o.first_iterations);
   f.field({.name = "iterations",
            .label = "Iterations, later frames",
-           .help = "Optimiser steps that move the joints into the next frame, over all levels.",
+           .help = "Optimiser steps that move the joints into the next frame, over all levels; a run "
+                   "counts the shading iterations, too.",
            .min = 2,
            .max = 1e6},
           o.iterations);
