@@ -119,18 +119,24 @@ vec3 convolvedAt(const Image<vec3>& source, const Texels& texels, vec3 direction
   const int middle = static_cast<int>(latLongFromDirection(direction).x * w);
   const int half = std::min(w / 2, static_cast<int>(capHalfWidth(latitude, reach) / (2 * kPi) * w) + 2);
   const int columns = 2 * half >= w ? w : 2 * half + 1;
+  const int first = (middle - half + w) % w;
   dvec3 sum(0);
   double weight = 0;
   for (int y = top; y <= bottom; ++y) {
     vec3 row(0);
     float row_weight = 0;
-    for (int i = 0; i < columns; ++i) {
-      const int x = (middle - half + i + w) % w;
-      const std::size_t t = source.index(x, y);
-      const float k = kernel(glm::dot(direction, texels.direction[t]));
-      row += k * source.pixels[t];
-      row_weight += k;
-    }
+    const auto convolve = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const float k = kernel(glm::dot(direction, texels.direction[t]));
+        row += k * source.pixels[t];
+        row_weight += k;
+      }
+    };
+    // Around the seam in two pieces: a remainder a texel would be a third of the time.
+    const std::size_t row_begin = source.index(0, y);
+    const int ahead = std::min(columns, w - first);
+    convolve(row_begin + first, row_begin + first + ahead);
+    convolve(row_begin, row_begin + columns - ahead);
     sum += dvec3(row) * static_cast<double>(texels.solid_angle[y]);
     weight += static_cast<double>(row_weight) * texels.solid_angle[y];
   }
