@@ -172,6 +172,7 @@ class MainWindow final : public QMainWindow {
   void resetViews();
   QImage viewPicture();
   void rememberProject();
+  void keepRecent();
   void showRecent();
   bool mayClose();
 

@@ -129,6 +129,7 @@ void MainWindow::saveSettings() {
   if (!takeOverSettings(kNotSaved) || !model_.save()) return;
   reading_->setText("Settings saved");
   unsay({kNotSaved, kProjectNotSaved});
+  model_.refresh();  // its folder may have been away
 }
 
 void MainWindow::saveAs() {
@@ -234,6 +235,14 @@ void MainWindow::rememberProject() {
   memory_.keepFrame(QString::fromStdString(model_.project().document().id), model_.frameName());
 }
 
+// One that was never written could not be opened again.
+void MainWindow::keepRecent() {
+  const QString folder = QString::fromStdString(model_.project().folder().string());
+  if (!model_.onDisk() || memory_.recent().value(0) == folder) return;
+  memory_.keepRecent(folder);
+  showRecent();
+}
+
 void MainWindow::showRecent() { start_->setRecent(memory_.recent()); }
 
 void MainWindow::showCaptureLost() {
@@ -267,8 +276,7 @@ void MainWindow::showOpened() {
   preview_ = {};
   broken_.clear();
   const Project& project = model_.project();
-  memory_.keepRecent(QString::fromStdString(project.folder().string()));
-  showRecent();
+  keepRecent();
   centre_->setCurrentIndex(1);
   rail_->setEnabled(true);
   showPanels(true);

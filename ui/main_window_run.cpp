@@ -172,15 +172,13 @@ void MainWindow::showFinished(const JobFinished& outcome) {
   if (!notes.isEmpty() && !outcome.at_rest)
     message_->show(MessagePanel::Kind::Notice, "Left out", notes.join("\n"));
   settings_->setRunning(false);
-  // Else what failed for the want of it would speak of pictures.
-  if (!model_.captureLost() && !model_.project().captureIsThere()) {
-    model_.setCaptureThere(false);
-    showCaptureLost();
-  }
+  const bool lost = !model_.project().captureIsThere();
+  if (lost) model_.setCaptureThere(false);
   model_.endRun();
   showSplats();
   project_panel_->refreshScores();
   refreshCommands();
+  if (lost) showCaptureLost();  // last: what failed for the want of it speaks of pictures
 }
 
 }  // namespace beam

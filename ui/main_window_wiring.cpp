@@ -61,6 +61,7 @@ void MainWindow::connectModel() {
   });
   connect(&model_, &ProjectModel::valuesChanged, this, &MainWindow::showValues);
   connect(&model_, &ProjectModel::settingsChanged, this, [this] {
+    if (model_.isOpen()) keepRecent();  // the first save
     showTitle();
     refreshCommands();
   });

@@ -7,6 +7,7 @@
 #include <QStandardPaths>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/pipeline/project_history.h"
@@ -267,7 +268,7 @@ void ProjectModel::edited() {
   unsaved_ = true;
   edited_ = true;
   // A project that is not on disk yet stays in memory until it is run or saved.
-  if (on_disk_ && !project_->readOnly()) autosave_.start();
+  if (on_disk_ && (!Project::isProject(project_->folder()) || !project_->readOnly())) autosave_.start();
   Q_EMIT settingsChanged();
   refresh();
 }
@@ -386,6 +387,7 @@ void ProjectModel::showStages() {
     for (StageStatus& stage : stages_) {
       stage.state = StepState::Blocked;
       stage.detail = "The capture is not where it was.";
+      stage.to_do += std::exchange(stage.running, 0);  // of a run that ended with it
     }
   }
   Q_EMIT stagesChanged();

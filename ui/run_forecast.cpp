@@ -9,8 +9,9 @@ namespace beam {
 
 QString forecastText(const RunEstimate& e) {
   if (e.steps_missing == 0) return countText(e.frames_total, "frame") + ": everything is there already";
-  const QString missing =
+  QString missing =
       QString("%1: %2 missing").arg(countText(e.frames, "frame"), countText(e.steps_missing, "step"));
+  if (e.leaves_take) missing += ", fitted apart from its take";
   if (!e.measured) return missing + "; how long they take is known after the first";
   return missing + ", " + rangeText(e.seconds_low, e.seconds_high);
 }

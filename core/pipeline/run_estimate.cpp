@@ -59,7 +59,11 @@ RunEstimate estimateRun(const Project& project, const RunRequest& request, const
     for (const std::string& step : turn.lead() ? plan.lead_steps : plan.frame_steps)
       estimator.step(step, take, turn.frame, !turn.lead());
   }
-  return estimator.finish(plan);
+  RunEstimate out = estimator.finish(plan);
+  out.leaves_take = std::any_of(plan.turns.begin(), plan.turns.end(), [&](const Turn& turn) {
+    return project.takeOf(turn.frame).before(turn.frame) && !sketch.takeOf(turn.frame).before(turn.frame);
+  });
+  return out;
 }
 
 }  // namespace beam

@@ -10,7 +10,8 @@ struct RunEstimate {
   int frames = 0, frames_total = 0;  // with something to compute; in the run
   int steps_missing = 0, steps_total = 0;
   double seconds_low = 0, seconds_high = 0;
-  bool measured = false;  // false: of some step nothing tells how long it takes, the seconds say nothing
+  bool measured = false;     // false: of some step nothing tells how long it takes, the seconds say nothing
+  bool leaves_take = false;  // a frame of a take of several would be fitted for itself
 };
 
 // Changes nothing, on disk or in `project`: the takes that the run would make are made in a copy. Looks at

@@ -6,6 +6,7 @@
 #include <QAction>
 #include <QApplication>
 #include <QMessageBox>
+#include <QPushButton>
 #include <QTimer>
 
 #include "core/io/file.h"
@@ -202,6 +203,34 @@ TEST_F(LostAndFound, ARunWhoseCaptureGoesEndsWithThatWord) {
   EXPECT_EQ(window.message().title(), "The capture is not where it was");
 }
 
+TEST_F(LostAndFound, ARunThatOutlivesItsCaptureEndsWithThatWord) {
+  ASSERT_TRUE(open(folder / "capture.beam"));
+  changeSurface();
+  testing::holdStandInRuns(true);
+  window.run();
+  ASSERT_TRUE(waitFor([&] { return window.job().busy(); }));
+  fs::rename(folder / "capture", folder / "elsewhere");
+  ASSERT_TRUE(waitFor([&] { return window.model().captureLost(); }));
+  testing::holdStandInRuns(false);
+  ASSERT_TRUE(waitFor([&] { return !window.job().busy(); }));
+  EXPECT_EQ(window.message().title(), "The capture is not where it was");
+  EXPECT_TRUE(enabled("locate_capture"));
+  for (const StageStatus& stage : window.model().stages()) EXPECT_EQ(stage.running, 0) << stage.id;
+}
+
+TEST_F(LostAndFound, ACaptureIsRecentOnceItsProjectIsOnDisk) {
+  fs::remove_all(folder / "capture.beam");
+  ASSERT_TRUE(open(folder / "capture"));
+  const auto listed = [&] {
+    for (const auto* link : window.findChildren<QPushButton*>("recent"))
+      if (link->text().contains("capture.beam")) return true;
+    return false;
+  };
+  EXPECT_FALSE(listed());
+  ASSERT_TRUE(window.model().save());
+  EXPECT_TRUE(listed());
+}
+
 TEST_F(LostAndFound, SettingsThatAreNowhereOnDiskAreAskedFor) {
   fs::remove_all(folder / "capture.beam");
   ASSERT_TRUE(open(folder / "capture"));
@@ -233,6 +262,8 @@ TEST_F(LostAndFound, AWordOfAFailureGoesWhenItIsMended) {
   fs::rename(folder / "gone.beam", folder / "capture.beam");
   window.commands().action("save_settings")->trigger();
   EXPECT_FALSE(window.message().isVisible()) << window.message().text().toStdString();
+  ASSERT_TRUE(waitFor([&] { return window.settled(); }));
+  EXPECT_TRUE(window.model().values().cloud);
 }
 
 TEST_F(LostAndFound, ABrokenProjectOffersItsEarlierVersionsInWords) {

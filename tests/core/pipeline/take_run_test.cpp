@@ -9,6 +9,7 @@
 
 #include "core/pipeline/file_lock.h"
 #include "core/pipeline/project_report.h"
+#include "core/pipeline/run_estimate.h"
 #include "core/pipeline/run_plan.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
@@ -90,6 +91,8 @@ TEST_F(TakeRun, AFrameIsFittedAloneWhereWhatItBuildsOnIsNotSolved) {
   changed.save();
   RunRequest third = framesOf({3});
   third.keeps_takes = true;
+  EXPECT_TRUE(estimateRun(house_.open(), third, {}).leaves_take);
+  EXPECT_FALSE(estimateRun(house_.open(), framesOf({0}), {}).leaves_take) << "nothing is before it";
   const Counts counts = countsOf(third);
   EXPECT_EQ(counts.at("surface.fit"), 1);
   EXPECT_FALSE(counts.contains("track.pose"));
