@@ -113,6 +113,8 @@ MainWindow::MainWindow(StudioServices services, Layout layout)
   fresh_state_ = saveState();
   if (memory_.lasts()) restoreLayout();
   showPanels(false);
+  // What a window that was never shown says of its panels has lost their sizes.
+  if (const QByteArray kept = memory_.bytes("docks"); !kept.isEmpty()) panels_state_ = kept;
   recallTimes();
   showRecent();
   refreshCommands();

@@ -7,6 +7,7 @@
 #include <QDockWidget>
 #include <QLineEdit>
 #include <QMessageBox>
+#include <QSettings>
 #include <QTest>
 #include <QTimer>
 
@@ -302,6 +303,29 @@ TEST_F(Studio, SaysDuringARunThatChangesAreForTheNextOne) {
   window.cancelRun();
   EXPECT_TRUE(waitFor([&] { return !window.job().busy(); }));
   EXPECT_TRUE(window.settings().note().isEmpty());
+}
+
+TEST_F(Studio, KeepsTheSizesOfPanelsFromOneStartToTheNext) {
+  constexpr int kWidth_px = 420;
+  QCoreApplication::setOrganizationName("beam-tests");
+  QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, QString::fromStdString(folder.path()));
+  const auto widthIn = [&](std::optional<int> wanted) {
+    MainWindow kept(services(), MainWindow::Layout::Remembered);
+    kept.setAsksBeforeClosing(false);
+    kept.show();
+    kept.open(folder / "capture");
+    EXPECT_TRUE(waitFor([&] { return kept.model().isOpen() && kept.settled(); }));
+    auto* inspector = kept.findChild<QDockWidget*>("inspector");
+    if (wanted) kept.resizeDocks({inspector}, {*wanted}, Qt::Horizontal);
+    QApplication::processEvents();
+    const int width = inspector->width();
+    kept.close();
+    return width;
+  };
+  EXPECT_NEAR(widthIn(kWidth_px), kWidth_px, 2);
+  EXPECT_NEAR(widthIn({}), kWidth_px, 2);
+  EXPECT_NEAR(widthIn({}), kWidth_px, 2);
+  QCoreApplication::setOrganizationName({});
 }
 
 TEST_F(Studio, ClosesDuringARun) {
