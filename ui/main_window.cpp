@@ -111,10 +111,8 @@ MainWindow::MainWindow(StudioServices services, Layout layout)
   connectPlayer();
   fitToScreen();
   fresh_state_ = saveState();
-  if (memory_.lasts()) restoreLayout();
   showPanels(false);
-  // What a window that was never shown says of its panels has lost their sizes.
-  if (const QByteArray kept = memory_.bytes("docks"); !kept.isEmpty()) panels_state_ = kept;
+  if (memory_.lasts()) restoreLayout();
   recallTimes();
   showRecent();
   refreshCommands();
@@ -372,7 +370,8 @@ void MainWindow::recallLook() {
 
 void MainWindow::restoreLayout() {
   restoreGeometry(memory_.bytes("geometry"));
-  restoreState(memory_.bytes("docks"));
+  // Not by way of restoreState: a window that was never shown would lose the sizes of its panels.
+  if (const QByteArray kept = memory_.bytes("docks"); !kept.isEmpty()) panels_state_ = kept;
   view_tabs_->setCurrentIndex(memory_.number("view", 0));
 }
 

@@ -255,9 +255,9 @@ void MainWindow::showCaptureLost() {
 
 // What would be lost by closing is asked for; finished steps never are.
 bool MainWindow::mayClose() {
-  if (asks_before_closing_ && !takeOverSettings("The window was not closed")) return false;
-  if (!settingsMayGo()) return false;
-  if (!asks_before_closing_ || !job_.busy()) return true;
+  if (!asks_before_closing_) return true;
+  if (!takeOverSettings("The window was not closed") || !settingsMayGo()) return false;
+  if (!job_.busy()) return true;
   QMessageBox question(
       QMessageBox::Question, "A run is going on",
       "A run is going on. Stop it and close?\nFinished steps are kept; Run goes on from there.",

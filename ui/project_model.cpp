@@ -115,14 +115,10 @@ void ProjectModel::open(const fs::path& path, const fs::path& place) {
             Error::Kind::Data,
             fmt::format("\"{}\" does not exist; choose a capture folder or a project", path.string()));
       }
-      result->project =
+      Project project =
           looksLikeProject(path) ? Project::open(path, setup) : projectOfCapture(path, place, setup);
-      try {
-        result->project->fields();  // refuses settings that no stage takes
-      } catch (const Error&) {
-        result->project.reset();
-        throw;
-      }
+      project.fields();  // refuses settings that no stage takes
+      result->project = std::move(project);
       if (!result->project->captureIsThere()) result->project->lookWithoutCapture();
       result->capture = std::make_shared<const CaptureSet>(result->project->capture());
     } catch (const std::exception& e) {  // the border of this thread: said in the window
