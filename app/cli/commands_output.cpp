@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/io/splat_ply.h"
 #include "core/pipeline/frame_list.h"
+#include "core/scene/transform.h"
 #include "core/stages/interpolated_frame.h"
 #include "core/stages/render_channels.h"
 
@@ -81,9 +82,9 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
     const std::string& name = project.capture().frames[frame.value];
     const std::optional<FrameResult> r = loadShownFrame(project, frame);
     if (!r) throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", name));
-    const GaussianCloud cloud = world ? r->cloud : rotated(r->cloud, to_frame);
+    const GaussianCloud cloud = world ? r->cloud : transformed(r->cloud, {to_frame});
     std::optional<Materials> materials = r->materials;
-    if (materials && !world) materials = rotated(*materials, to_frame);
+    if (materials && !world) materials = transformed(*materials, {to_frame});
     const long long number = std::max(0LL, frameNumber(name));
     writeSplatPly(std::filesystem::path(flags.out) / fmt::format("frame.{:06}.ply", number), cloud,
                   materials ? &*materials : nullptr);

@@ -11,7 +11,6 @@
 #include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/io/ply_file.h"
-#include "core/math/sh_rotation.h"
 
 namespace beam {
 namespace {
@@ -111,24 +110,6 @@ struct ShColumns {
   }
 };
 
-ShBlock rotatedSh(const ShBlock& in, const dmat3& rotation) {
-  const ShRotation turn(rotation);
-  ShBlock out = in;
-  const std::size_t n = in.coefficients.size() / (static_cast<std::size_t>(kShCount) * in.channels);
-  for (std::size_t i = 0; i < n; ++i) turn.apply(in.channels, in.of(i), out.of(i));
-  return out;
-}
-
-void requireRotation(const dmat3& r) {
-  const dmat3 square = glm::transpose(r) * r;
-  double off = std::abs(glm::determinant(r) - 1);
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) off = std::max(off, std::abs(square[i][j] - (i == j)));
-  }
-  if (off < 1e-6) return;
-  throw Error(Error::Kind::Bug, "Gaussians can be turned by a rotation only; a mirror has no quaternion");
-}
-
 Materials materialsOf(const PlyElement& vertex, const Columns& columns) {
   const std::size_t n = vertex.count, roughness = columns["roughness"];
   const ShColumns base_color(columns, "base_color_", 3), occlusion(columns, "ao_", 1);
@@ -222,24 +203,6 @@ SplatFile readSplatPly(const std::filesystem::path& path) {
     columns.bad(e.what());
   }
   return file;
-}
-
-GaussianCloud rotated(const GaussianCloud& cloud, const dmat3& rotation) {
-  requireRotation(rotation);
-  GaussianCloud out = cloud;
-  const quat q = quat(glm::quat_cast(rotation));
-  for (vec3& p : out.position_m) p = vec3(rotation * dvec3(p));
-  for (quat& r : out.rotation) r = glm::normalize(q * r);
-  out.color = rotatedSh(cloud.color, rotation);
-  return out;
-}
-
-Materials rotated(const Materials& materials, const dmat3& rotation) {
-  requireRotation(rotation);
-  Materials out = materials;
-  out.base_color = rotatedSh(materials.base_color, rotation);
-  out.ambient_occlusion = rotatedSh(materials.ambient_occlusion, rotation);
-  return out;
 }
 
 }  // namespace beam

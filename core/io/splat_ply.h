@@ -20,9 +20,4 @@ struct SplatFile {
 void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud, const Materials* materials);
 SplatFile readSplatPly(const std::filesystem::path& path);
 
-// The cloud in other axes: positions, rotations and the SH bands turn with `rotation`, which is any proper
-// rotation; a mirror is refused (Error{Bug}).
-GaussianCloud rotated(const GaussianCloud& cloud, const dmat3& rotation);
-Materials rotated(const Materials& materials, const dmat3& rotation);
-
 }  // namespace beam

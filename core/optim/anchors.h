@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scene/pose.h"
+#include "core/scene/skin_binding.h"
 
 namespace beam {
 
@@ -20,14 +21,8 @@ struct PoseGradient {
   explicit PoseGradient(std::size_t n) : position(n, vec3(0)), rotation(n, vec4(0)) {}
 };
 
-// Point i hangs on targets [i * per_point, (i + 1) * per_point), nearest first; its weights sum to 1.
-struct Anchors {
-  int per_point = 0;
-  std::vector<std::uint32_t> target;
-  std::vector<float> weight;
-
-  std::size_t points() const { return per_point ? target.size() / static_cast<std::size_t>(per_point) : 0; }
-};
+// A graph of neighbours has the form of a binding.
+using Anchors = SkinBinding;
 
 // The same pairs seen from the targets, in ascending order: target j owns slots [first[j], first[j + 1]) of
 // `slot`, each an index into Anchors::target. Sums over it have a fixed order.

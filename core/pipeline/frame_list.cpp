@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/scene/gaussian_sequence.h"
 
 namespace beam {
 namespace {
@@ -56,16 +57,6 @@ std::string numbersText(const std::map<long long, FrameIndex>& by_number) {
 }
 
 }  // namespace
-
-long long frameNumber(std::string_view name) {
-  const std::size_t last = name.find_last_of("0123456789");
-  if (last == std::string_view::npos) return -1;
-  std::size_t first = last;
-  while (first > 0 && name[first - 1] >= '0' && name[first - 1] <= '9') --first;
-  long long value = -1;
-  std::from_chars(name.data() + first, name.data() + last + 1, value);
-  return value;
-}
 
 std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<std::string>& frames) {
   std::map<long long, FrameIndex> by_number;

@@ -10,9 +10,6 @@
 
 namespace beam {
 
-// The number in a frame's name: its last run of digits ("frame_0012" -> 12); -1 without digits.
-long long frameNumber(std::string_view name);
-
 // Positions in `frames` (the capture's names), ascending, each once. An item may also be a whole frame name.
 // Throws Error{Usage} for words it does not understand and for numbers that the capture does not have.
 std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<std::string>& frames);

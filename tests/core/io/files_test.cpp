@@ -208,27 +208,6 @@ TEST(SplatPly, HoldsTheStandardColumnsFirstInTheirOrder) {
   }
 }
 
-float valueOf(const ShBlock& b, vec3 d, int c) {
-  const auto basis = shBasis(d);
-  float v = 0;
-  for (int k = 0; k < kShCount; ++k) v += basis[k] * b.of(0)[k * b.channels + c];
-  return v;
-}
-
-TEST(SplatPly, TurningTheAxesKeepsWhatIsSeenFromATurnedDirection) {
-  const Splats s = someSplats(1);
-  for (const dmat3& r :
-       {worldFromCapture(UpAxis::PlusZ), glm::mat3_cast(glm::normalize(dquat(0.7, 0.3, -0.5, 0.4)))}) {
-    const GaussianCloud turned = rotated(s.cloud, r);
-    for (int i = 0; i < 20; ++i) {
-      const RandomStream u(9, i);
-      const vec3 d = glm::normalize(vec3(u.normal(0), u.normal(1), u.normal(2)));
-      EXPECT_NEAR(valueOf(turned.color, vec3(r * dvec3(d)), 1), valueOf(s.cloud.color, d, 1), 2e-4);
-    }
-  }
-  EXPECT_THROW(rotated(s.cloud, dmat3(-1.0)), Error);
-}
-
 TEST(Files, AnAtomicWriteReplacesAndLeavesNothingElse) {
   const TempDir dir;
   writeFileAtomically(dir / "a", std::string_view("one"));

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Gaussians carry beside their shape, named and described, so that writers and pictures need not know
+// each kind. Materials stay typed; attributesOf lists them with the rest.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/image/image.h"
+#include "core/math/sh.h"
+
+namespace beam {
+
+struct GaussianFrame;
+
+struct AttributeInfo {
+  std::string name;  // snake_case, unique in a frame
+  int channels = 1;  // 1 or 3
+  // 1: one value from all sides; kShCount: degree-3 SH, value(d) = 0.5 + sum_k basis_k(d) c_k.
+  int coefficients = 1;
+  Encoding encoding = Encoding::Data;
+  std::string unit = "";
+  // Turns with the cloud: its bands are those of the world's directions. A plain value never does.
+  bool turns() const { return coefficients == kShCount; }
+  bool operator==(const AttributeInfo&) const = default;
+};
+
+// values[(gaussian * coefficients + k) * channels + channel].
+struct Attribute {
+  AttributeInfo info;
+  std::vector<float> values;
+  bool operator==(const Attribute&) const = default;
+};
+
+// An attribute in somebody else's memory.
+struct AttributeSpan {
+  AttributeInfo info;
+  std::span<const float> values;
+};
+
+// Every one of the frame: "opacity", "radiance", the materials' "roughness", "base_color",
+// "ambient_occlusion" where it has some, then its own. Valid as long as the frame.
+std::vector<AttributeSpan> attributesOf(const GaussianFrame& frame);
+
+// Throws Error{Data} unless it has 1 or 3 channels, 1 or kShCount coefficients, finite values for
+// `gaussians`, and a name that no typed one has.
+void validate(const Attribute& attribute, std::size_t gaussians);
+
+}  // namespace beam

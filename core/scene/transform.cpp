@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/transform.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/math/sh_rotation.h"
+
+namespace beam {
+namespace {
+
+void requireSimilarity(const Similarity3& s) {
+  const dmat3& r = s.rotation;
+  const dmat3 square = glm::transpose(r) * r;
+  double off = std::abs(glm::determinant(r) - 1);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) off = std::max(off, std::abs(square[i][j] - (i == j)));
+  }
+  if (!(off < 1e-6))
+    throw Error(Error::Kind::Bug, "Gaussians can be turned by a rotation only; a mirror has no quaternion");
+  if (!(s.scale > 0) || !std::isfinite(s.scale))
+    throw Error(Error::Kind::Bug, "a similarity needs a positive scale");
+}
+
+void turn(std::vector<float>& coefficients, int channels, const dmat3& rotation) {
+  const ShRotation rotate(rotation);
+  const std::size_t each = static_cast<std::size_t>(kShCount) * channels;
+  std::vector<float> before(each);
+  for (std::size_t i = 0; i + each <= coefficients.size(); i += each) {
+    std::copy_n(coefficients.begin() + static_cast<std::ptrdiff_t>(i), each, before.begin());
+    rotate.apply(channels, before.data(), coefficients.data() + i);
+  }
+}
+
+}  // namespace
+
+GaussianCloud transformed(const GaussianCloud& cloud, const Similarity3& a_from_b) {
+  requireSimilarity(a_from_b);
+  GaussianCloud out = cloud;
+  const quat q = quat(glm::quat_cast(a_from_b.rotation));
+  for (vec3& p : out.position_m) p = vec3(a_from_b * dvec3(p));
+  for (quat& r : out.rotation) r = glm::normalize(q * r);
+  if (a_from_b.scale != 1) {
+    for (vec3& s : out.scale_m) s = vec3(a_from_b.scale * dvec3(s));
+  }
+  turn(out.color.coefficients, out.color.channels, a_from_b.rotation);
+  return out;
+}
+
+Materials transformed(const Materials& materials, const Similarity3& a_from_b) {
+  requireSimilarity(a_from_b);
+  Materials out = materials;
+  turn(out.base_color.coefficients, out.base_color.channels, a_from_b.rotation);
+  turn(out.ambient_occlusion.coefficients, out.ambient_occlusion.channels, a_from_b.rotation);
+  return out;
+}
+
+Attribute transformed(const Attribute& attribute, const Similarity3& a_from_b) {
+  requireSimilarity(a_from_b);
+  Attribute out = attribute;
+  if (out.info.turns()) turn(out.values, out.info.channels, a_from_b.rotation);
+  return out;
+}
+
+Mesh transformed(const Mesh& mesh, const Similarity3& a_from_b) {
+  requireSimilarity(a_from_b);
+  Mesh out = mesh;
+  for (vec3& v : out.vertices) v = vec3(a_from_b * dvec3(v));
+  return out;
+}
+
+}  // namespace beam

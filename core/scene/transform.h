@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values in other axes, another unit, or from another origin: positions and sizes follow the similarity,
+// rotations, normals and SH bands its turn. A pure turn between axes only exchanges and negates numbers.
+#pragma once
+
+#include "core/math/similarity3.h"
+#include "core/scene/gaussian_cloud.h"
+#include "core/scene/gaussian_sequence.h"
+#include "core/scene/mesh.h"
+
+namespace beam {
+
+// Throw Error{Bug} for a mirror, which has no quaternion, and for a scale that is not positive.
+GaussianCloud transformed(const GaussianCloud& cloud, const Similarity3& a_from_b);
+Materials transformed(const Materials& materials, const Similarity3& a_from_b);
+Attribute transformed(const Attribute& attribute, const Similarity3& a_from_b);
+Mesh transformed(const Mesh& mesh, const Similarity3& a_from_b);
+
+}  // namespace beam

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/base/rng.h"
+#include "core/scene/capture.h"
+#include "core/scene/transform.h"
+
+namespace beam {
+namespace {
+
+dmat3 someTurn() { return glm::mat3_cast(glm::normalize(dquat(0.7, 0.3, -0.5, 0.4))); }
+Similarity3 someSimilarity() { return {someTurn(), 0.02, dvec3(210, -3, 7)}; }
+
+vec3 randomVec(std::uint64_t i) {
+  const RandomStream u(3, i);
+  return {u.normal(0), u.normal(1), u.normal(2)};
+}
+
+GaussianCloud someCloud() {
+  GaussianCloud c;
+  c.color = ShBlock(20, 3);
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    c.position_m.push_back(randomVec(i));
+    c.rotation.push_back(glm::normalize(quat(1, randomVec(i + 100))));
+    c.scale_m.push_back(glm::abs(randomVec(i + 200)) + 0.01f);
+    c.opacity.push_back(0.5f);
+  }
+  for (std::size_t k = 0; k < c.color.coefficients.size(); ++k)
+    c.color.coefficients[k] = static_cast<float>(RandomStream(4, k).normal(0));
+  return c;
+}
+
+double relativeError(const dvec3& found, const dvec3& expected) {
+  return glm::length(found - expected) / (1 + glm::length(expected));
+}
+
+TEST(Similarity, ThereAndBackIsWhereItBegan) {
+  const Similarity3 s = someSimilarity();
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const dvec3 x(randomVec(i));
+    EXPECT_LT(relativeError(inverse(s) * (s * x), x), 1e-11);
+    EXPECT_LT(relativeError((inverse(s) * s) * x, x), 1e-11);
+    const Similarity3 other{glm::transpose(someTurn()), 3, dvec3(1, 2, 3)};
+    EXPECT_LT(relativeError((s * other) * x, s * (other * x)), 1e-12);
+  }
+}
+
+TEST(Similarity, ATurnBetweenAxesRoundsNothingThereOrBack) {
+  for (const UpAxis up : {UpAxis::PlusY, UpAxis::PlusZ, UpAxis::MinusY}) {
+    const Similarity3 s{worldFromCapture(up)};
+    EXPECT_TRUE(isTurn(inverse(s)));
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      const dvec3 x(randomVec(i));
+      EXPECT_EQ(inverse(s) * (s * x), x);
+      dvec3 sizes = glm::abs(s * x), expected = glm::abs(x);
+      std::sort(&sizes.x, &sizes.x + 3);
+      std::sort(&expected.x, &expected.x + 3);
+      EXPECT_EQ(sizes, expected) << "only exchanged and negated";
+    }
+  }
+}
+
+TEST(Transformed, TheShapeOfAGaussianFollows) {
+  const GaussianCloud before = someCloud(), after = transformed(before, someSimilarity());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_LT(relativeError(dvec3(after.position_m[i]), someSimilarity() * dvec3(before.position_m[i])),
+              1e-6);
+    // A point one sigma along each axis of the Gaussian stays one.
+    for (int axis = 0; axis < 3; ++axis) {
+      vec3 unit(0);
+      unit[axis] = 1;
+      const dvec3 was = dvec3(before.rotation[i] * (before.scale_m[i] * unit));
+      const dvec3 is = dvec3(after.rotation[i] * (after.scale_m[i] * unit));
+      EXPECT_LT(glm::length(is - 0.02 * (someTurn() * was)), 1e-6);
+    }
+  }
+  EXPECT_EQ(after.opacity, before.opacity);
+}
+
+TEST(Transformed, ColourSeenFromATurnedDirectionStays) {
+  const GaussianCloud before = someCloud(), after = transformed(before, someSimilarity());
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const vec3 d = glm::normalize(randomVec(i + 300));
+    const auto was = shBasis(d), is = shBasis(vec3(someTurn() * dvec3(d)));
+    double a = 0, b = 0;
+    for (int k = 0; k < kShCount; ++k) {
+      a += was[k] * before.color.of(i)[k * 3 + 1];
+      b += is[k] * after.color.of(i)[k * 3 + 1];
+    }
+    EXPECT_NEAR(a, b, 5e-4);
+  }
+}
+
+TEST(Transformed, APlainAttributeStaysAndOneOfDirectionsTurns) {
+  const Attribute plain{{.name = "glow", .channels = 3}, {0.1f, 0.2f, 0.3f}};
+  EXPECT_EQ(transformed(plain, someSimilarity()), plain);
+  Attribute sh{{.name = "visibility", .coefficients = kShCount}, std::vector<float>(kShCount)};
+  sh.values[1] = 1;
+  const Attribute turned = transformed(sh, someSimilarity());
+  EXPECT_NE(turned, sh);
+  double norm = 0;
+  for (const float v : turned.values) norm += double(v) * v;
+  EXPECT_NEAR(norm, 1, 1e-5) << "a turn keeps the power of a band";
+}
+
+TEST(Transformed, RefusesMirrorsAndScalesThatAreNoSizes) {
+  EXPECT_THROW(transformed(someCloud(), {dmat3(-1.0)}), Error);
+  EXPECT_THROW(transformed(someCloud(), {dmat3(1.0), 0}), Error);
+  EXPECT_THROW(transformed(Mesh{}, {dmat3(1.0), -2}), Error);
+}
+
+}  // namespace
+}  // namespace beam
