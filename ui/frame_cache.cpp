@@ -15,6 +15,18 @@ std::uint64_t bytesIn(const std::vector<T>& values) {
 
 }  // namespace
 
+FrameValues valuesOf(std::shared_ptr<const GaussianFrame> frame) {
+  FrameValues values;
+  if (!frame) return values;
+  values.interpolated = frame->interpolated;
+  values.stale = frame->stale;
+  values.stale_note = frame->stale_note;
+  if (frame->materials) values.materials = {frame, &*frame->materials};
+  const GaussianCloud* cloud = &frame->cloud;
+  values.cloud = {std::move(frame), cloud};
+  return values;
+}
+
 std::uint64_t bytesOf(const FrameValues& v) {
   std::uint64_t bytes = 0;
   if (v.cloud) {
@@ -46,8 +58,6 @@ FrameCache::~FrameCache() {
 
 void FrameCache::clear() {
   std::lock_guard lock(mutex_);
-  load_ = nullptr;
-  stamps_.clear();
   wishes_.clear();
   entries_.clear();
   bytes_ = 0;
@@ -55,41 +65,29 @@ void FrameCache::clear() {
   ++generation_;
 }
 
-void FrameCache::setSource(Load load, std::vector<Digest> stamps) {
-  {
-    std::lock_guard lock(mutex_);
-    load_ = std::move(load);
-    stamps_ = std::move(stamps);
-    full_ = false;
-  }
-  changed_.notify_all();
-}
-
-std::optional<Digest> FrameCache::stampOf(FrameIndex frame) const {
-  const auto i = static_cast<std::size_t>(frame.value);
-  return i < stamps_.size() ? std::optional(stamps_[i]) : std::nullopt;
-}
-
-bool FrameCache::isCurrent(const Entry& entry, FrameIndex frame) const {
-  return entry.stamp == stampOf(frame);
-}
-
-std::optional<FrameCache::Found> FrameCache::find(FrameIndex frame) {
+std::optional<FrameCache::Found> FrameCache::find(const GaussianSequence& sequence, FrameIndex frame) {
   std::lock_guard lock(mutex_);
-  const auto found = entries_.find(frame.value);
+  const auto found = entries_.find({sequence.id(), frame.value});
   if (found == entries_.end()) return std::nullopt;
-  found->second.used = ++uses_;
-  return Found{found->second.values, found->second.error, isCurrent(found->second, frame)};
+  Entry& entry = found->second;
+  entry.used = ++uses_;
+  return Found{entry.values, entry.error, entry.stamp == sequence.stamp(frame)};
 }
 
-bool FrameCache::isBlank(FrameIndex frame) const {
+// Null: there is none, or of another result.
+const FrameCache::Entry* FrameCache::currentEntry(const GaussianSequence& sequence, FrameIndex frame) const {
+  const auto found = entries_.find({sequence.id(), frame.value});
+  const bool current = found != entries_.end() && found->second.stamp == sequence.stamp(frame);
+  return current ? &found->second : nullptr;
+}
+
+bool FrameCache::isBlank(const GaussianSequence& sequence, FrameIndex frame) const {
   std::lock_guard lock(mutex_);
-  const auto found = entries_.find(frame.value);
-  return found != entries_.end() && isCurrent(found->second, frame) && !found->second.values.cloud &&
-         found->second.error.empty();
+  const Entry* entry = currentEntry(sequence, frame);
+  return entry && !entry->values.cloud && entry->error.empty();
 }
 
-void FrameCache::want(std::vector<FrameIndex> wishes) {
+void FrameCache::want(std::vector<SequenceFrame> wishes) {
   {
     std::lock_guard lock(mutex_);
     wishes_ = std::move(wishes);
@@ -98,25 +96,23 @@ void FrameCache::want(std::vector<FrameIndex> wishes) {
   changed_.notify_all();
 }
 
-bool FrameCache::isWished(FrameIndex frame) const {
-  return std::find(wishes_.begin(), wishes_.end(), frame) != wishes_.end();
+bool FrameCache::isWished(const Key& key) const {
+  return std::any_of(wishes_.begin(), wishes_.end(), [&](const auto& wish) { return keyOf(wish) == key; });
 }
 
 // Frames of a take are of a size: one more like those that are held would push out a wished one.
 bool FrameCache::noRoomLikely() const {
   std::uint64_t largest = 0;
-  for (const auto& [frame, entry] : entries_) {
-    if (!isWished(FrameIndex{frame})) return false;
+  for (const auto& [key, entry] : entries_) {
+    if (!isWished(key)) return false;
     largest = std::max(largest, entry.bytes);
   }
   return bytes_ + largest > budget_;
 }
 
-std::optional<FrameIndex> FrameCache::nextWish() const {
-  if (!load_) return std::nullopt;
+std::optional<SequenceFrame> FrameCache::nextWish() const {
   for (std::size_t i = 0; i < wishes_.size(); ++i) {
-    const auto entry = entries_.find(wishes_[i].value);
-    if (entry != entries_.end() && isCurrent(entry->second, wishes_[i])) continue;
+    if (currentEntry(*wishes_[i].sequence, wishes_[i].frame)) continue;
     if (i > 0 && (full_ || noRoomLikely())) return std::nullopt;
     return wishes_[i];
   }
@@ -124,17 +120,17 @@ std::optional<FrameIndex> FrameCache::nextWish() const {
 }
 
 // Makes room first: what nobody wishes for, least recently used first; for the most urgent wish everything.
-bool FrameCache::insert(FrameIndex frame, Entry entry) {
-  const bool urgent = wishes_.empty() || wishes_.front() == frame;
+bool FrameCache::insert(const Key& key, Entry entry) {
+  const bool urgent = wishes_.empty() || keyOf(wishes_.front()) == key;
   const auto drop = [this](auto at) {
     bytes_ -= at->second.bytes;
     entries_.erase(at);
   };
-  if (const auto old = entries_.find(frame.value); old != entries_.end()) drop(old);
+  if (const auto old = entries_.find(key); old != entries_.end()) drop(old);
   while (bytes_ + entry.bytes > budget_ && !entries_.empty()) {
     auto victim = entries_.end();
     for (auto i = entries_.begin(); i != entries_.end(); ++i) {
-      const bool spared = isWished(FrameIndex{i->first}) && !urgent;
+      const bool spared = isWished(i->first) && !urgent;
       if (!spared && (victim == entries_.end() || i->second.used < victim->second.used)) victim = i;
     }
     if (victim == entries_.end()) break;
@@ -146,7 +142,7 @@ bool FrameCache::insert(FrameIndex frame, Entry entry) {
   }
   entry.used = ++uses_;
   bytes_ += entry.bytes;
-  entries_.emplace(frame.value, std::move(entry));
+  entries_.emplace(key, std::move(entry));
   return true;
 }
 
@@ -154,34 +150,33 @@ void FrameCache::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return nextWish().has_value(); })) {
     if (stop.stop_requested()) return;
-    const FrameIndex frame = *nextWish();
-    const Load load = load_;
+    const SequenceFrame wish = *nextWish();
     const std::uint64_t generation = generation_;
     Entry entry;
-    entry.stamp = stampOf(frame);
     reading_ = true;
     lock.unlock();
+    entry.stamp = wish.sequence->stamp(wish.frame);
     try {
-      entry.values = load(frame);
+      entry.values = valuesOf(wish.sequence->load(wish.frame));
     } catch (const std::exception& e) {  // the border of this thread: whoever looks for the frame is told
       entry.error = e.what();
     }
     entry.bytes = bytesOf(entry.values);
     lock.lock();
-    const bool kept = generation == generation_ && insert(frame, std::move(entry));
+    const bool kept = generation == generation_ && insert(keyOf(wish), std::move(entry));
     lock.unlock();
-    if (kept) arrived_(frame);
+    if (kept) arrived_(wish.frame);
     lock.lock();
     reading_ = false;
   }
 }
 
-std::vector<bool> FrameCache::held(std::size_t frames) const {
+std::vector<bool> FrameCache::held(const GaussianSequence& sequence) const {
   std::lock_guard lock(mutex_);
-  std::vector<bool> held(frames);
-  for (const auto& [frame, entry] : entries_) {
-    if (static_cast<std::size_t>(frame) < frames)
-      held[frame] = entry.values.cloud != nullptr && isCurrent(entry, FrameIndex{frame});
+  std::vector<bool> held(sequence.frames().size());
+  for (std::size_t f = 0; f < held.size(); ++f) {
+    const Entry* entry = currentEntry(sequence, FrameIndex{static_cast<std::int32_t>(f)});
+    held[f] = entry && entry->values.cloud;
   }
   return held;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decoded frames in memory, within a budget: the least recently used go first, wishes are read on a
-// background thread in the order of their urgency.
+// Decoded frames of sequences in memory, within one budget for all of them: the least recently used go first,
+// wishes are read on a background thread in the order of their urgency.
 #pragma once
 
 #include <condition_variable>
@@ -12,12 +12,10 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "core/base/hash.h"
-#include "core/scene/gaussian_cloud.h"
-#include "core/scene/ids.h"
-#include "core/scene/mesh.h"
+#include "core/scene/gaussian_sequence.h"
 
 namespace beam {
 
@@ -30,22 +28,25 @@ struct FrameValues {
   std::string stale_note = {};
 };
 
+FrameValues valuesOf(std::shared_ptr<const GaussianFrame> frame);  // null: nothing
 std::uint64_t bytesOf(const FrameValues& values);
 // What a machine can spare: 2 GB or a quarter of its memory, whichever is less.
 std::uint64_t defaultFrameBudget();
 
-// Safe to use from several threads.
+struct SequenceFrame {
+  std::shared_ptr<const GaussianSequence> sequence;
+  FrameIndex frame;
+};
+
+// Safe to use from several threads. A frame is kept under its sequence's id: snapshots of one source share
+// what was read, as long as its stamp stays the same.
 class FrameCache {
  public:
-  using Load = std::function<FrameValues(FrameIndex)>;  // on the cache's thread; may throw
   // `arrived` is called on the cache's thread when a frame came into memory (or could not be read).
   FrameCache(std::uint64_t budget_bytes, std::function<void(FrameIndex)> arrived);
   ~FrameCache();
 
   void clear();
-  // Where frames come from and, by frame, what their results are: a frame under another stamp is read again
-  // when wished for. No stamps: not known yet, everything is read.
-  void setSource(Load load, std::vector<Digest> stamps);
 
   struct Found {
     FrameValues values;
@@ -53,13 +54,13 @@ class FrameCache {
     bool current = true;  // false: there is a newer result than this one
   };
   // Counts as use.
-  std::optional<Found> find(FrameIndex frame);
+  std::optional<Found> find(const GaussianSequence& sequence, FrameIndex frame);
   // Read, and there is nothing to see: results of early steps alone.
-  bool isBlank(FrameIndex frame) const;
+  bool isBlank(const GaussianSequence& sequence, FrameIndex frame) const;
   // Replaces earlier wishes. The first is read in any case, the others as far as the budget goes.
-  void want(std::vector<FrameIndex> wishes);
+  void want(std::vector<SequenceFrame> wishes);
 
-  std::vector<bool> held(std::size_t frames) const;  // by frame: current values are in memory
+  std::vector<bool> held(const GaussianSequence& sequence) const;  // by frame: current values are in memory
   std::uint64_t bytes() const;
   std::uint64_t budget() const { return budget_; }
   bool idle() const;  // nothing is being read or will be
@@ -71,22 +72,21 @@ class FrameCache {
     std::optional<Digest> stamp;
     std::uint64_t bytes = 0, used = 0;  // used: larger is later
   };
+  using Key = std::pair<std::string, std::int32_t>;  // the sequence's id, frame
+  static Key keyOf(const SequenceFrame& wish) { return {wish.sequence->id(), wish.frame.value}; }
   void work(const std::stop_token& stop);
-  bool isCurrent(const Entry& entry, FrameIndex frame) const;
-  std::optional<Digest> stampOf(FrameIndex frame) const;
-  std::optional<FrameIndex> nextWish() const;
-  bool insert(FrameIndex frame, Entry entry);
-  bool isWished(FrameIndex frame) const;
+  const Entry* currentEntry(const GaussianSequence& sequence, FrameIndex frame) const;
+  std::optional<SequenceFrame> nextWish() const;
+  bool insert(const Key& key, Entry entry);
+  bool isWished(const Key& key) const;
   bool noRoomLikely() const;
 
   const std::uint64_t budget_;
   const std::function<void(FrameIndex)> arrived_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  Load load_;
-  std::vector<Digest> stamps_;
-  std::vector<FrameIndex> wishes_;
-  std::map<std::int32_t, Entry> entries_;
+  std::vector<SequenceFrame> wishes_;
+  std::map<Key, Entry> entries_;
   std::uint64_t bytes_ = 0, uses_ = 0, generation_ = 0;
   bool full_ = false;  // what is still wished for does not fit beside what is more urgent
   bool reading_ = false;

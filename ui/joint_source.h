@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joints of the shown frame with their way over the last frames, and the influence of one on the skin; read
-// on a background thread from what the Track stage left.
+// from the sequence on a background thread.
 #pragma once
 
 #include <QObject>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/optim/anchors.h"
+#include "core/scene/skin_binding.h"
 #include "ui/project_model.h"
 
 namespace beam {
@@ -16,7 +16,7 @@ namespace beam {
 using JointPositions = std::vector<vec3>;
 
 // Shares of `joint` in every skin Gaussian, 0 where it is none of its anchors.
-std::vector<float> influenceOf(const Anchors& anchors, std::uint32_t joint);
+std::vector<float> influenceOf(const SkinBinding& binding, std::uint32_t joint);
 
 struct JointsShown {
   // Oldest first, the last is the frame's; empty: none. All of them are the same joints.

@@ -51,15 +51,15 @@ void MainWindow::run(const std::string& until, RunScope scope, int every) {
   showSplats();
   RunRequest request = requestOf(until, scope, every);
   request.times = forecast_.machineTimes();
-  run_ = overlayOf(request, static_cast<int>(model_.capture()->frames.size()));
+  run_ = overlayOf(request, model_.frameCount());
   timeline_->setRun(run_);
   model_.startRun();
   job_.start(model_.project(), request, services_.job_device);
   settings_->setRunning(true);
-  run_bar_->showStarted(
-      run_.frames.size() == 1
-          ? "Starting frame " + QString::fromStdString(model_.capture()->frames[run_.frames.front()])
-          : "Starting " + countText(static_cast<std::int64_t>(run_.frames.size()), "frame"));
+  run_bar_->showStarted(run_.frames.size() == 1
+                            ? "Starting frame " + model_.nameOf(FrameIndex{run_.frames.front()})
+                            : "Starting " +
+                                  countText(static_cast<std::int64_t>(run_.frames.size()), "frame"));
   refreshCommands();
 }
 

@@ -111,8 +111,8 @@ Problem MainWindow::problemOf(Problem::Kind kind, const QString& text) const {
     for (const View& view : model_.capture()->views) {
       if (view.name == camera.toStdString()) problem.camera = view.name;
     }
-    for (const std::string& name : model_.capture()->frames) {
-      if (name == frame.toStdString()) problem.frame = frame;
+    for (FrameIndex f{0}; f.value < model_.frameCount(); ++f.value) {
+      if (model_.nameOf(f) == frame) problem.frame = frame;
     }
   }
   problem.stage = run_.running_stage;
@@ -296,7 +296,7 @@ void MainWindow::showSplats() {
         QString("frame %1 · %2").arg(model_.frameName(), countText(preview_.cloud->size(), "Gaussian")));
   }
   if (const auto& held = model_.held()) {
-    const QString from = QString::fromStdString(model_.capture()->frames[held->from.value]);
+    const QString from = model_.nameOf(held->from);
     splat_->setBadge(staleWords(held->values));
     return splat_->setScene({held->values.cloud, held->values.materials},
                             QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));

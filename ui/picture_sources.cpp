@@ -8,6 +8,8 @@
 #include "core/base/error.h"
 #include "core/io/image_file.h"
 #include "core/render/deferred.h"
+#include "core/stages/result_files.h"
+#include "core/stages/step_ids.h"
 #include "viewers/splat/splat_view.h"
 
 namespace beam {
@@ -153,7 +155,7 @@ constexpr Map kMaps[] = {{"ao", "Ambient occlusion", false},
 Picture bakedOf(const Shot& shot, const Map& map, const Project& project) {
   if (shot.capture->views[shot.view.value].split != Split::Train)
     refuse(fmt::format("camera {} is held out for tests: no maps are baked for it", shot.camera));
-  const auto folder = project.result("materials.bake", shot.frame);
+  const auto folder = project.result(kBakeStep, shot.frame);
   if (!folder) refuse("The maps are not baked with these settings. Run until Materials.");
   const auto file = *folder / kMapsFolder / fmt::format("{}.{}.exr", shot.camera, map.file);
   if (!std::filesystem::exists(file)) {
@@ -187,7 +189,7 @@ std::vector<PictureSource> pictureSources(const ProjectModel& model, ViewIndex v
   std::vector<PictureSource> sources;
   const std::shared_ptr<const CaptureSet> capture = model.capture();
   if (!capture) return sources;
-  const std::string &camera = capture->views[view.value].name, &frame = capture->frames[model.frame().value];
+  const std::string &camera = capture->views[view.value].name, frame = model.frameName().toStdString();
   const Shot shot{capture, view,  model.frame(),
                   camera,  frame, fmt::format("camera {} · frame {}", camera, frame)};
   addPhotograph(sources, shot);

@@ -18,9 +18,11 @@ Player::Player(ProjectModel& model, std::function<bool()> follows, QObject* pare
   timer_.setTimerType(Qt::PreciseTimer);
   timer_.setInterval(kPoll_ms);
   connect(&timer_, &QTimer::timeout, this, &Player::poll);
-  connect(&model_, &ProjectModel::opened, this, [this] {
+  connect(&model_, &ProjectModel::sequenceChanged, this, [this] {
+    const std::shared_ptr<const GaussianSequence> sequence = model_.sequence();
+    if (!sequence) return;
     pause();
-    clock_.setTake(static_cast<int>(model_.capture()->frames.size()), model_.capture()->frames_per_second);
+    clock_.setTake(model_.frameCount(), sequence->rate());
     Q_EMIT rangeChanged();
     Q_EMIT rateChanged();
   });
@@ -28,7 +30,7 @@ Player::Player(ProjectModel& model, std::function<bool()> follows, QObject* pare
 }
 
 void Player::play() {
-  if (!model_.isOpen() || playing()) return;
+  if (!model_.sequence() || playing()) return;
   clock_.start(model_.frame().value, now());
   if (!playing()) return;
   waiting_ = true;
@@ -74,7 +76,7 @@ void Player::showFrame(int frame) {
 }
 
 void Player::goTo(int frame) {
-  if (!model_.isOpen() || clock_.frames() == 0) return;
+  if (!model_.sequence() || clock_.frames() == 0) return;
   pause();
   model_.setFrame(FrameIndex{std::clamp(frame, 0, clock_.frames() - 1)});
 }
@@ -103,14 +105,16 @@ void Player::setLoop(bool loop) {
 }
 
 void Player::prefetch() {
-  const std::shared_ptr<const TakeSurvey> survey = model_.survey();
-  if (!survey || clock_.frames() == 0) return;
+  const std::shared_ptr<const GaussianSequence> sequence = model_.sequence();
+  if (!sequence || clock_.frames() == 0) return;
   const FrameRange range = clock_.range();
   const int frame = model_.frame().value;
   std::vector<FrameIndex> wanted;
   const auto add = [&](int f) {
-    if (f < 0 || f >= static_cast<int>(survey->stamps.size()) || survey->stamps[f] == Digest{}) return;
+    if (f < 0 || f >= model_.frameCount()) return;
     const FrameIndex index{f};
+    const std::optional<Digest> stamp = sequence->stamp(index);
+    if (!stamp || *stamp == Digest{}) return;
     if (f != frame && std::find(wanted.begin(), wanted.end(), index) == wanted.end()) wanted.push_back(index);
   };
   for (int i = 1; i <= kAhead; ++i) {

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/project_history.h"
-#include "core/stages/interpolated_frame.h"
+#include "core/stages/project_sequence.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -42,19 +42,6 @@ Project projectOfCapture(const fs::path& capture, const fs::path& place,
   }
 }
 
-FrameValues valuesOf(const Project& project, FrameIndex frame, const Leftovers& leftovers) {
-  FrameValues values;
-  if (std::optional<FrameResult> result = loadShownFrame(project, frame, leftovers)) {
-    values.interpolated = result->interpolated;
-    values.stale = result->stale;
-    values.stale_note = result->stale_note;
-    values.cloud = std::make_shared<const GaussianCloud>(std::move(result->cloud));
-    if (result->materials)
-      values.materials = std::make_shared<const Materials>(std::move(*result->materials));
-  }
-  return values;
-}
-
 }  // namespace
 
 struct ProjectModel::Opened {
@@ -71,6 +58,7 @@ struct ProjectModel::Surveyed {
   bool pictures = false;
   std::shared_ptr<const Project> project;
   std::shared_ptr<const TakeSurvey> survey;  // null: `error` tells why
+  std::shared_ptr<const GaussianSequence> sequence;
   QString error;
 };
 
@@ -90,7 +78,7 @@ ProjectModel::ProjectModel(StudioServices services, QObject* parent)
                    this,
                    [this] {
                      Q_EMIT memoryChanged();
-                     if (!ready_ && project_) showFrame();
+                     if (!ready_ && sequence_) showFrame();
                    },
                    Qt::QueuedConnection);
              }) {
@@ -149,30 +137,42 @@ void ProjectModel::adopt(const std::shared_ptr<Opened>& result) {
   forgetValues();
   project_.emplace(std::move(*result->project));
   capture_ = result->capture;
+  sequence_ = sequenceOf(*project_, Shows::Newest);
   ready_ = false;
-  cache_.setSource([project = *project_](FrameIndex frame) { return valuesOf(project, frame, {}); }, {});
   on_disk_ = Project::isProject(project_->folder());
   unsaved_ = !on_disk_;
   edited_ = false;
+  Q_EMIT sequenceChanged();
   Q_EMIT opened();
   refresh();
   showFrame();
 }
 
+void ProjectModel::show(std::shared_ptr<const GaussianSequence> sequence) {
+  close();
+  sequence_ = std::move(sequence);
+  ready_ = false;
+  Q_EMIT sequenceChanged();
+  showFrame();
+}
+
 void ProjectModel::close() {
-  if (!project_) return;
+  if (!sequence_) return;
   if (autosave_.isActive()) saveQuietly();
+  const bool of_project = project_.has_value();
   project_.reset();
   forgetValues();
   unsaved_ = false;
   states_seen_ = ++states_ticket_;  // what is still on its way is of the closed one
-  Q_EMIT closed();
+  Q_EMIT sequenceChanged();
+  if (of_project) Q_EMIT closed();
 }
 
 void ProjectModel::forgetValues() {
   autosave_.stop();
   run_project_.reset();
   capture_ = nullptr;
+  sequence_ = nullptr;
   frame_ = FrameIndex{0};
   stages_.clear();
   survey_ = nullptr;
@@ -191,9 +191,8 @@ void ProjectModel::forgetValues() {
 
 void ProjectModel::startAt(const QString& frame_name) {
   start_open_ = true;
-  for (std::size_t i = 0; capture_ && i < capture_->frames.size(); ++i) {
-    if (QString::fromStdString(capture_->frames[i]) == frame_name)
-      return setFrame(FrameIndex{static_cast<std::int32_t>(i)});
+  for (FrameIndex f{0}; f.value < frameCount(); ++f.value) {
+    if (nameOf(f) == frame_name) return setFrame(f);
   }
 }
 
@@ -241,14 +240,14 @@ void ProjectModel::endRun() {
 }
 
 QString ProjectModel::valuesFrameName() const {
-  if (!capture_ || !values_of_) return frameName();
-  return QString::fromStdString(capture_->frames[values_of_->value]);
+  return sequence_ && values_of_ ? nameOf(*values_of_) : frameName();
 }
 
-QString ProjectModel::frameName() const {
-  if (!capture_ || capture_->frames.empty()) return {};
-  return QString::fromStdString(capture_->frames[frame_.value]);
+QString ProjectModel::nameOf(FrameIndex frame) const {
+  return QString::fromStdString(beam::nameOf(*sequence_, frame));
 }
+
+QString ProjectModel::frameName() const { return frameCount() > 0 ? nameOf(frame_) : QString(); }
 
 void ProjectModel::setFrame(FrameIndex frame) {
   start_open_ = false;
@@ -337,6 +336,7 @@ void ProjectModel::refresh(bool pictures) {
           if (look) surveyor->forgetKeys();
           result->survey = std::make_shared<const TakeSurvey>(surveyor->survey(project));
           result->project = std::make_shared<const Project>(project);
+          result->sequence = sequenceOf(project, Shows::Newest, result->survey);
         } catch (const std::exception& e) {  // the border of this thread: said in the window
           result->error = QString::fromStdString(e.what());
         }
@@ -357,11 +357,7 @@ void ProjectModel::take(const std::shared_ptr<Surveyed>& result) {
   survey_ = result->survey;
   project_->adoptTakes(*result->project);
   if (run_project_) run_project_->adoptTakes(*result->project);
-  cache_.setSource(
-      [project = result->project, survey = survey_](FrameIndex frame) {
-        return valuesOf(*project, frame, survey->leftovers[frame.value]);
-      },
-      survey_->stamps);
+  sequence_ = result->sequence;
   showStages();
   if (start_open_) startAtFirstSolved();
   showFrame();
@@ -389,30 +385,36 @@ void ProjectModel::showStages() {
   Q_EMIT stagesChanged();
 }
 
-// The nearest frame that has something to show, the earlier of two; before the first survey the frame itself.
+// The nearest frame that has something to show, the earlier of two; while that is not known the frame itself.
 std::optional<FrameIndex> ProjectModel::frameWithResults() const {
-  if (!survey_) return frame_;
-  const int frames = static_cast<int>(survey_->stamps.size());
+  const int frames = frameCount();
+  if (frames > 0 && !sequence_->stamp(frame_)) return frame_;
   for (int away = 0; away < frames; ++away) {
     for (const int f : {frame_.value - away, frame_.value + away}) {
-      if (f >= 0 && f < frames && survey_->stamps[f] != Digest{} && !cache_.isBlank(FrameIndex{f}))
-        return FrameIndex{f};
+      if (f < 0 || f >= frames) continue;
+      const FrameIndex frame{f};
+      if (sequence_->stamp(frame) != Digest{} && !cache_.isBlank(*sequence_, frame)) return frame;
     }
   }
   return std::nullopt;
+}
+
+void ProjectModel::want(FrameIndex first) {
+  std::vector<SequenceFrame> wishes{{sequence_, first}};
+  for (const FrameIndex frame : prefetch_) wishes.push_back({sequence_, frame});
+  cache_.want(std::move(wishes));
 }
 
 void ProjectModel::showFrame() {
   const std::optional<FrameIndex> source = frameWithResults();
   FrameValues found;
   if (source) {
-    std::vector<FrameIndex> wishes{*source};
-    wishes.insert(wishes.end(), prefetch_.begin(), prefetch_.end());
-    cache_.want(std::move(wishes));
-    const std::optional<FrameCache::Found> held = cache_.find(*source);
+    want(*source);
+    const std::optional<FrameCache::Found> held = cache_.find(*sequence_, *source);
     ready_ = held && held->current;
     if (!ready_) return;
-    if (survey_ && cache_.isBlank(*source)) return showFrame();  // with the next nearest
+    const bool known = sequence_->stamp(*source).has_value();
+    if (known && cache_.isBlank(*sequence_, *source)) return showFrame();  // with the next nearest
     found = held->values;
     const QString error = QString::fromStdString(held->error);
     if (!error.isEmpty() && error != told_error_)
@@ -435,15 +437,12 @@ void ProjectModel::showFrame() {
 
 void ProjectModel::prefetch(std::vector<FrameIndex> frames) {
   prefetch_ = std::move(frames);
-  if (!project_) return;
-  std::vector<FrameIndex> wishes{frameWithResults().value_or(frame_)};
-  wishes.insert(wishes.end(), prefetch_.begin(), prefetch_.end());
-  cache_.want(std::move(wishes));
+  if (sequence_) want(frameWithResults().value_or(frame_));
 }
 
 void ProjectModel::setPassing(bool passing) {
   passing_ = passing;
-  if (!passing_ && project_ && ready_) loadMesh();
+  if (!passing_ && sequence_ && ready_) loadMesh();
 }
 
 void ProjectModel::loadMesh() {
@@ -452,14 +451,11 @@ void ProjectModel::loadMesh() {
     return;
   }
   const std::uint64_t ticket = ++mesh_ticket_;
-  const Leftovers leftovers =
-      survey_ ? survey_->leftovers[static_cast<std::size_t>(frame_.value)] : Leftovers{};
-  mesh_worker_.submit([this, project = shownProject(), frame = frame_, leftovers, ticket] {
+  mesh_worker_.submit([this, sequence = sequence_, frame = frame_, ticket] {
     std::shared_ptr<const Mesh> mesh;
     QString error;
     try {
-      if (std::optional<Mesh> found = loadShownMesh(project, frame, leftovers))
-        mesh = std::make_shared<const Mesh>(std::move(*found));
+      mesh = sequence->mesh(frame);
     } catch (const std::exception& e) {  // the border of this thread: said in the window
       error = QString::fromStdString(e.what());
     }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The open project as the window sees it: settings edited here on the window's thread; capture, states and
-// results read on background threads and announced when they are there.
+// What is open as the window sees it: frames, their names and rate of a sequence, which a project gives or a
+// file without one; a project's settings edited here on the window's thread; its capture, states and results
+// read on background threads and announced when they are there.
 #pragma once
 
 #include <QObject>
 #include <QTimer>
 
-#include "core/pipeline/frame_result.h"
 #include "core/pipeline/take_survey.h"
+#include "core/scene/gaussian_sequence.h"
 #include "ui/frame_cache.h"
 #include "ui/stage_status.h"
 #include "ui/studio_services.h"
@@ -35,6 +36,9 @@ class ProjectModel final : public QObject {
   // from the first save on). Answers with opened() or failed().
   void open(const std::filesystem::path& path, const std::filesystem::path& place = {});
   bool opening() const { return opening_; }
+  // Frames without a project behind them: nothing to set or to run, no cameras, no capture. Answers with
+  // sequenceChanged().
+  void show(std::shared_ptr<const GaussianSequence> sequence);
   void close();
   // The capture lies in `folder` now; answers like open(), or with anotherCapture() unless `other_too`.
   void locateCapture(const std::filesystem::path& folder, bool other_too = false);
@@ -46,7 +50,7 @@ class ProjectModel final : public QObject {
   // after the first survey.
   void startAt(const QString& frame_name);
 
-  bool isOpen() const { return project_.has_value(); }
+  bool isOpen() const { return project_.has_value(); }  // a project
   const Project& project() const { return *project_; }
   // The project that states and values are told of: while a run goes on as it was when that started, so that
   // what is being made is shown, whatever is edited meanwhile for the next.
@@ -54,6 +58,10 @@ class ProjectModel final : public QObject {
   void startRun();
   void endRun();
   std::shared_ptr<const CaptureSet> capture() const { return capture_; }
+  // The frames that are shown; null: nothing is open. Another snapshot with every survey.
+  std::shared_ptr<const GaussianSequence> sequence() const { return sequence_; }
+  int frameCount() const { return sequence_ ? static_cast<int>(sequence_->frames().size()) : 0; }
+  QString nameOf(FrameIndex frame) const;
   const StudioServices& services() const { return services_; }
 
   FrameIndex frame() const { return frame_; }
@@ -91,11 +99,13 @@ class ProjectModel final : public QObject {
   const FrameCache& cache() const { return cache_; }
   // States and values of the last refresh have arrived.
   bool settled() const {
-    return !opening_ && states_seen_ == states_ticket_ && mesh_seen_ == mesh_ticket_ && (ready_ || !project_);
+    return !opening_ && states_seen_ == states_ticket_ && mesh_seen_ == mesh_ticket_ &&
+           (ready_ || !sequence_);
   }
 
  Q_SIGNALS:
   void openingStarted(const QString& path);
+  void sequenceChanged();  // other frames are open, or none; before opened()
   void opened();
   void closed();
   void failed(const QString& what, const QString& why);
@@ -118,6 +128,7 @@ class ProjectModel final : public QObject {
   void take(const std::shared_ptr<Surveyed>& result);
   void showStages();
   void showFrame();
+  void want(FrameIndex first);
   std::optional<FrameIndex> frameWithResults() const;
   void loadMesh();
   void edited();
@@ -126,6 +137,7 @@ class ProjectModel final : public QObject {
   StudioServices services_;
   std::optional<Project> project_, run_project_;
   std::shared_ptr<const CaptureSet> capture_;
+  std::shared_ptr<const GaussianSequence> sequence_;
   FrameIndex frame_;
   std::vector<StageStatus> stages_;
   std::shared_ptr<const TakeSurvey> survey_;

@@ -185,8 +185,8 @@ std::optional<ViewIndex> ProjectPanel::viewOf(const QTreeWidgetItem* item) const
 
 void ProjectPanel::refresh() {
   frames_->clear();
-  if (model_.capture()) {
-    for (const std::string& frame : model_.capture()->frames) frames_->addItem(QString::fromStdString(frame));
+  if (model_.sequence()) {
+    for (FrameIndex f{0}; f.value < model_.frameCount(); ++f.value) frames_->addItem(model_.nameOf(f));
     frames_->setCurrentIndex(model_.frame().value);
   }
   frames_->setEnabled(frames_->count() > 1);
@@ -212,7 +212,7 @@ void ProjectPanel::refreshFacts() {
                .arg(QString::fromStdString(capture.name), QString::fromStdString(project.imported().layout));
   lines << QString("%1, %2, %3")
                .arg(countText(static_cast<std::int64_t>(capture.views.size()), "camera"),
-                    countText(static_cast<std::int64_t>(capture.frames.size()), "frame"),
+                    countText(model_.frameCount(), "frame"),
                     capture.masks != MaskKind::None ? "masks" : "no masks");
   if (const FrameValues& values = model_.values(); values.cloud) {
     lines << countText(static_cast<std::int64_t>(values.cloud->size()), "Gaussian") +

@@ -376,8 +376,8 @@ void TimelinePanel::showState() {
 }
 
 void TimelinePanel::showMemory() {
-  const std::size_t frames = model_.capture() ? model_.capture()->frames.size() : 0;
-  const std::vector<bool> held = model_.cache().held(frames);
+  const auto sequence = model_.sequence();
+  const std::vector<bool> held = sequence ? model_.cache().held(*sequence) : std::vector<bool>();
   lanes_->setMemory(held);
   const auto megabytes = [](std::size_t bytes) {
     return numberText(std::llround(1e-6 * static_cast<double>(bytes)));

@@ -14,8 +14,8 @@
 #include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/method/score_views.h"
-#include "core/pipeline/frame_result.h"
 #include "core/scene/frame_views.h"
+#include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
 
 namespace beam {
@@ -49,26 +49,24 @@ class ScratchFolder {
 };
 
 // Channels the solved frames can give and the truth can judge.
-RenderRequest requestFor(const Project& project, const GroundTruth& truth, const std::string& frames,
-                         const fs::path& out) {
+RenderRequest requestFor(const GaussianSequence& sequence, const CaptureSet& capture,
+                         const GroundTruth& truth, const std::string& frames, const fs::path& out) {
   RenderRequest r;
   r.out = out;
-  r.frames = selectSolvedFrames(frames, project);
-  for (std::size_t v = 0; v < project.capture().views.size(); ++v) {
-    const std::string& name = project.capture().views[v].name;
-    if (std::find(truth.test_cameras.begin(), truth.test_cameras.end(), name) != truth.test_cameras.end()) {
-      r.views.push_back({static_cast<std::int32_t>(v)});
-    }
+  r.frames = selectSolvedFrames(frames, sequence);
+  for (const View& view : capture.views) {
+    const auto& tests = truth.test_cameras;
+    if (std::find(tests.begin(), tests.end(), view.name) != tests.end()) r.views.push_back(view);
   }
   if (r.views.empty()) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\" has none of the test cameras of \"{}\"",
-                                               project.folder().string(), truth.folder.string()));
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" has none of the test cameras of \"{}\"", sequence.id(),
+                                               truth.folder.string()));
   }
   bool materials = true, meshes = true;
   for (const FrameIndex f : r.frames) {
-    const auto result = loadFrameResult(project, f);
-    materials &= result && result->materials;
-    meshes &= project.state("surface.mesh", f) == StepState::Done;
+    const FrameContent content = sequence.content(f);
+    materials &= content.materials;
+    meshes &= content.mesh;
   }
   r.channels = {"rgb", "normal", "depth"};
   if (meshes) r.channels.emplace_back("mesh");
@@ -96,17 +94,18 @@ Evaluated scoreAgainstTruth(const EvaluateFlags& flags, const Project& project, 
   }
   const ScratchFolder scratch;
   const auto device = makeDevice(flags.device);
-  const RenderRequest request = requestFor(project, truth, flags.frames, scratch.path());
+  const auto sequence = sequenceOf(project, Shows::Solved);
+  const RenderRequest request = requestFor(*sequence, project.capture(), truth, flags.frames, scratch.path());
   {
     Progress part = progress.part(0.5, "render");
-    renderChannels(project, request, *device, part);
+    renderChannels(*sequence, request, *device, part);
   }
   {
     Progress part = progress.part(0.3, "score");
     e.table = scorePictures(truth, scratch.path(), part, e.each);
   }
   Progress part = progress.part(0.2, "compare frames");
-  scoreMotion(project, request.frames, &truth, *device, part, e.each);
+  scoreMotion(*sequence, request.views, request.frames, &truth, *device, part, e.each);
   return e;
 }
 
@@ -123,21 +122,22 @@ void addMean(const std::string& row, const std::vector<PictureScore>& scores, Sc
 // Held-out photographs at their full size, whichever cameras have one of the frame.
 Evaluated scoreHeldOut(const EvaluateFlags& flags, const Project& project, CommandContext& context) {
   const CaptureSet& capture = project.capture();
-  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, project);
+  const auto sequence = sequenceOf(project, Shows::Solved);
+  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, *sequence);
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
   Evaluated e;
   std::vector<PictureScore> all;
   for (const FrameIndex frame : frames) {
     Progress part = progress.part(0.8 / static_cast<double>(frames.size()), "score");
-    const std::optional<FrameResult> result = loadFrameResult(project, frame);
+    const std::shared_ptr<const GaussianFrame> result = sequence->load(frame);
     if (!result) {
-      throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first",
-                                                 capture.frames[static_cast<std::size_t>(frame.value)]));
+      throw Error(Error::Kind::Data,
+                  fmt::format("frame {} is not solved yet: run it first", nameOf(*sequence, frame)));
     }
     for (const ViewScore& v : scoreViews(loadFrameViews(capture, frame, Split::Test, 1, part), true,
                                          result->cloud, *device, part)) {
-      Scores& own = e.each[capture.frames[static_cast<std::size_t>(frame.value)]][v.camera];
+      Scores& own = e.each[nameOf(*sequence, frame)][v.camera];
       own["rgb.psnr"] = v.score.psnr;
       own["rgb.ssim"] = v.score.ssim;
       own["rgb.psnr_mask"] = v.score.psnr_mask;
@@ -151,7 +151,7 @@ Evaluated scoreHeldOut(const EvaluateFlags& flags, const Project& project, Comma
   }
   addMean("rgb_held_out", all, e.table);
   Progress part = progress.part(0.2, "compare frames");
-  scoreMotion(project, frames, nullptr, *device, part, e.each);
+  scoreMotion(*sequence, capture.views, frames, nullptr, *device, part, e.each);
   return e;
 }
 

@@ -10,9 +10,8 @@
 #include "app/cli/selection.h"
 #include "core/base/error.h"
 #include "core/io/splat_ply.h"
-#include "core/pipeline/frame_list.h"
 #include "core/scene/transform.h"
-#include "core/stages/interpolated_frame.h"
+#include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
 
 namespace beam {
@@ -31,11 +30,11 @@ bool wantsWorld(const std::string& frame_of) {
 }
 
 // Names those of the frames that are interpolated.
-void tellInterpolated(const Project& project, const std::vector<FrameIndex>& frames, Console& console) {
+void tellInterpolated(const GaussianSequence& sequence, const std::vector<FrameIndex>& frames,
+                      Console& console) {
   std::vector<std::string> names;
   for (const FrameIndex f : frames) {
-    if (solvedAround(project, f))
-      names.push_back(project.capture().frames[static_cast<std::size_t>(f.value)]);
+    if (sequence.content(f).interpolated) names.push_back(nameOf(sequence, f));
   }
   if (!names.empty())
     console.print(fmt::format("interpolated, not solved: frames {}", fmt::join(names, ", ")));
@@ -43,23 +42,23 @@ void tellInterpolated(const Project& project, const std::vector<FrameIndex>& fra
 
 int runRender(const RenderFlags& flags, CommandContext& context) {
   const Project project = Project::open(flags.project, context.services.pipeline);
+  const auto sequence = sequenceOf(project, Shows::Between);
   RenderRequest request;
   request.channels = flags.channels;
   request.views = selectViews(flags.cameras, project.capture());
-  request.frames = selectSolvedFrames(flags.frames, project, true);
-  request.interpolate = true;
+  request.frames = selectSolvedFrames(flags.frames, *sequence);
   request.world_frame = wantsWorld(flags.frame_of);
   request.out = flags.out;
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
-  renderChannels(project, request, *device, progress);
+  renderChannels(*sequence, request, *device, progress);
   context.console.endProgress();
   context.console.print(fmt::format("wrote {} of {} camera{} and {} frame{} to \"{}\"",
                                     fmt::join(flags.channels, ", "), request.views.size(),
                                     request.views.size() == 1 ? "" : "s", request.frames.size(),
                                     request.frames.size() == 1 ? "" : "s", flags.out));
-  tellInterpolated(project, request.frames, context.console);
+  tellInterpolated(*sequence, request.frames, context.console);
   return 0;
 }
 
@@ -72,20 +71,22 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
     throw Error(Error::Kind::Usage, fmt::format("--format expects ply, found \"{}\"", flags.format));
   }
   const Project project = Project::open(flags.project, context.services.pipeline);
-  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, project, true);
+  const auto sequence = sequenceOf(project, Shows::Between);
+  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, *sequence);
   const bool world = wantsWorld(flags.frame_of);
-  const dmat3 to_frame = world ? dmat3(1.0) : glm::transpose(worldFromCapture(project.capture().up));
+  const Similarity3 capture_from_world = sequence->captureFromWorld();
   std::filesystem::create_directories(flags.out);
   Progress progress(context.stop, context.console.listener());
   progress.expect(static_cast<std::int64_t>(frames.size()));
   for (const FrameIndex frame : frames) {
-    const std::string& name = project.capture().frames[frame.value];
-    const std::optional<FrameResult> r = loadShownFrame(project, frame);
-    if (!r) throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", name));
-    const GaussianCloud cloud = world ? r->cloud : transformed(r->cloud, {to_frame});
+    const FrameLabel& label = sequence->frames()[static_cast<std::size_t>(frame.value)];
+    const std::shared_ptr<const GaussianFrame> r = sequence->load(frame);
+    if (!r)
+      throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", label.name));
+    const GaussianCloud cloud = world ? r->cloud : transformed(r->cloud, capture_from_world);
     std::optional<Materials> materials = r->materials;
-    if (materials && !world) materials = transformed(*materials, {to_frame});
-    const long long number = std::max(0LL, frameNumber(name));
+    if (materials && !world) materials = transformed(*materials, capture_from_world);
+    const long long number = std::max(0LL, label.number);
     writeSplatPly(std::filesystem::path(flags.out) / fmt::format("frame.{:06}.ply", number), cloud,
                   materials ? &*materials : nullptr);
     progress.step();
@@ -93,7 +94,7 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
   context.console.endProgress();
   context.console.print(
       fmt::format("wrote {} frame{} to \"{}\"", frames.size(), frames.size() == 1 ? "" : "s", flags.out));
-  tellInterpolated(project, frames, context.console);
+  tellInterpolated(*sequence, frames, context.console);
   return 0;
 }
 

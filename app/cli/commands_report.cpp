@@ -14,6 +14,7 @@
 #include "core/base/json_words.h"
 #include "core/base/log.h"
 #include "core/io/file.h"
+#include "core/stages/project_sequence.h"
 
 namespace beam {
 namespace {
@@ -123,11 +124,12 @@ void addEvaluatedFrames(const Project& project, QualityHistory& history) {
 }
 
 // Flicker along tracked Gaussians, of the results as they are now.
-void addFlicker(const Project& project, ComputeDevice& device, Progress& progress, QualityHistory& history) {
+void addFlicker(const GaussianSequence& sequence, ComputeDevice& device, Progress& progress,
+                QualityHistory& history) {
   std::vector<FrameIndex> frames;
   for (const FrameQuality& q : history.frames) frames.push_back(q.frame);
   PictureScores each;
-  scoreMotion(project, frames, nullptr, device, progress, each);
+  scoreMotion(sequence, {}, frames, nullptr, device, progress, each);
   for (const auto& [frame, cameras] : each) {
     for (const auto& [name, value] : cameras.at("")) addScore(history, frame, name, value);
   }
@@ -135,8 +137,8 @@ void addFlicker(const Project& project, ComputeDevice& device, Progress& progres
 
 int runReport(const ReportFlags& flags, CommandContext& context) {
   const Project project = Project::open(flags.project, context.services.pipeline);
-  ReportPage page{
-      project.name(), versionText(), factsOf(project), {}, project.capture().frames.size(), {}, {}, {}};
+  const auto sequence = sequenceOf(project, Shows::Solved);
+  ReportPage page{project.name(), versionText(), factsOf(project), {}, sequence->frames().size(), {}, {}, {}};
   page.history = qualityHistory(project);
   if (page.history.frames.empty()) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
@@ -148,12 +150,12 @@ int runReport(const ReportFlags& flags, CommandContext& context) {
   addEvaluatedFrames(project, page.history);
   {
     Progress part = progress.part(0.5, "compare frames");
-    addFlicker(project, *device, part, page.history);
+    addFlicker(*sequence, *device, part, page.history);
   }
   {
     Progress part = progress.part(0.5, "contact sheet");
-    page.pictures =
-        contactSheet(project, shownFrames(page.history), shownCameras(project, page.history), *device, part);
+    page.pictures = contactSheet(*sequence, project.capture(), shownFrames(page.history),
+                                 shownCameras(project, page.history), *device, part);
   }
   page.evaluation = evaluationOf(project);
   writeFileAtomically(flags.out, toHtml(page));

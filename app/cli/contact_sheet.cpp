@@ -7,7 +7,6 @@
 #include "core/io/image_file.h"
 #include "core/math/color.h"
 #include "core/method/training_views.h"
-#include "core/pipeline/frame_result.h"
 #include "core/render/deferred.h"
 #include "core/scene/frame_views.h"
 
@@ -33,7 +32,7 @@ vec3 encoded(vec3 v) {
           srgbFromLinear(std::clamp(v.z, 0.0f, 1.0f))};
 }
 
-void fill(const TrainingView& view, const FrameResult& result, GBufferRenderer& renderer, ContactRow& row) {
+void fill(const TrainingView& view, const GaussianFrame& result, GBufferRenderer& renderer, ContactRow& row) {
   const int w = view.photo.width, h = view.photo.height;
   Planes target;
   compose(view, vec3(0), target);
@@ -77,25 +76,23 @@ std::vector<std::pair<FrameView, bool>> chosenViews(const CaptureSet& capture, F
 
 }  // namespace
 
-std::vector<ContactRow> contactSheet(const Project& project, const std::vector<FrameIndex>& frames,
+std::vector<ContactRow> contactSheet(const GaussianSequence& sequence, const CaptureSet& capture,
+                                     const std::vector<FrameIndex>& frames,
                                      const std::vector<std::string>& cameras, ComputeDevice& device,
                                      Progress& progress) {
   std::vector<ContactRow> rows;
   GBufferRenderer renderer(device);
   progress.expect(static_cast<std::int64_t>(frames.size()));
   for (const FrameIndex frame : frames) {
-    const std::optional<FrameResult> result = loadFrameResult(project, frame);
+    const std::shared_ptr<const GaussianFrame> result = sequence.load(frame);
     if (result) {
-      const auto chosen = chosenViews(project.capture(), frame, cameras, progress);
+      const auto chosen = chosenViews(capture, frame, cameras, progress);
       std::vector<FrameView> views;
       views.reserve(chosen.size());
       for (const auto& [view, held_out] : chosen) views.push_back(view);
       const std::vector<TrainingView> crops = cropToMasks(views);
       for (std::size_t i = 0; i < crops.size(); ++i) {
-        rows.push_back({project.capture().frames[static_cast<std::size_t>(frame.value)],
-                        views[i].name,
-                        chosen[i].second,
-                        {}});
+        rows.push_back({nameOf(sequence, frame), views[i].name, chosen[i].second, {}});
         fill(crops[i], *result, renderer, rows.back());
       }
     }

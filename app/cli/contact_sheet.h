@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/pipeline/project.h"
 #include "core/render/device.h"
+#include "core/scene/capture.h"
+#include "core/scene/gaussian_sequence.h"
 
 namespace beam {
 
@@ -19,7 +20,8 @@ struct ContactRow {
 };
 
 // One row a frame and view that has a photograph. Cropped to the subject, about 200 pixels a side.
-std::vector<ContactRow> contactSheet(const Project& project, const std::vector<FrameIndex>& frames,
+std::vector<ContactRow> contactSheet(const GaussianSequence& sequence, const CaptureSet& capture,
+                                     const std::vector<FrameIndex>& frames,
                                      const std::vector<std::string>& cameras, ComputeDevice& device,
                                      Progress& progress);
 

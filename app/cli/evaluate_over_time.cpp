@@ -13,7 +13,6 @@
 #include "core/base/log.h"
 #include "core/io/ply_file.h"
 #include "core/method/evaluate_motion.h"
-#include "core/pipeline/frame_result.h"
 #include "core/render/deferred.h"
 
 namespace beam {
@@ -22,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::optional<TrueSkin> readTracks(const fs::path& file, const dmat3& world_from_capture) {
+std::optional<TrueSkin> readTracks(const fs::path& file, const Similarity3& world_from_capture) {
   if (!fs::exists(file)) return std::nullopt;
   const std::vector<PlyElement> elements = readPly(file);
   const PlyElement* vertex = findElement(elements, "vertex");
@@ -41,7 +40,7 @@ std::optional<TrueSkin> readTracks(const fs::path& file, const dmat3& world_from
     const dvec3 p(row[columns[0]], row[columns[1]], row[columns[2]]);
     const dvec3 n(row[columns[3]], row[columns[4]], row[columns[5]]);
     skin.position_m.emplace_back(world_from_capture * p);
-    skin.normal.emplace_back(world_from_capture * n);
+    skin.normal.emplace_back(world_from_capture.rotation * n);
   }
   return skin;
 }
@@ -49,17 +48,18 @@ std::optional<TrueSkin> readTracks(const fs::path& file, const dmat3& world_from
 // A frame with what its successor is compared to.
 struct Moment {
   FrameIndex frame;
-  FrameResult result;
+  std::shared_ptr<const GaussianFrame> result;
   std::optional<TrueSkin> skin;
   std::vector<SeenPoints> views;  // of the test cameras; only with a skin
 };
 
 class MotionScorer {
  public:
-  MotionScorer(const Project& project, const GroundTruth* truth, ComputeDevice& device, PictureScores& each)
-      : project_(project), truth_(truth), renderer_(device), each_(each) {
+  MotionScorer(const GaussianSequence& sequence, const std::vector<View>& views, const GroundTruth* truth,
+               ComputeDevice& device, PictureScores& each)
+      : sequence_(sequence), truth_(truth), renderer_(device), each_(each) {
     if (!truth) return;
-    for (const View& view : project.capture().views) {
+    for (const View& view : views) {
       const auto& tests = truth->test_cameras;
       if (std::find(tests.begin(), tests.end(), view.name) != tests.end()) cameras_.push_back(view.camera);
     }
@@ -69,7 +69,7 @@ class MotionScorer {
     std::optional<Moment> now = momentOf(index);
     if (!now) return before_.reset();
     const bool follows = before_ && before_->frame.value + 1 == index.value;
-    const bool tracked = follows && isTracked(before_->result.cloud, now->result.cloud);
+    const bool tracked = follows && isTracked(before_->result->cloud, now->result->cloud);
     if (!tracked) startTake(*now);
     if (follows && sameSkin(before_->skin, *now)) alongPoints(*now);
     if (tracked) alongGaussians(*now);
@@ -78,16 +78,16 @@ class MotionScorer {
 
  private:
   std::optional<Moment> momentOf(FrameIndex index) {
-    std::optional<FrameResult> result = loadFrameResult(project_, index);
+    std::shared_ptr<const GaussianFrame> result = sequence_.load(index);
     if (!result) return std::nullopt;
-    Moment m{index, std::move(*result), std::nullopt, {}};
+    Moment m{index, std::move(result), std::nullopt, {}};
     if (!truth_) return m;
     m.skin = readTracks(truth_->folder / "gt/tracks" / (name(index) + ".ply"),
-                        worldFromCapture(project_.capture().up));
+                        inverse(sequence_.captureFromWorld()));
     if (!m.skin) return m;
     for (const Camera& camera : cameras_) {
-      const Materials* materials = m.result.materials ? &*m.result.materials : nullptr;
-      m.views.push_back(seenPoints(renderer_.render(m.result.cloud, materials, camera), camera, *m.skin));
+      const Materials* materials = m.result->materials ? &*m.result->materials : nullptr;
+      m.views.push_back(seenPoints(renderer_.render(m.result->cloud, materials, camera), camera, *m.skin));
     }
     return m;
   }
@@ -105,7 +105,7 @@ class MotionScorer {
   }
 
   void startTake(const Moment& m) {
-    first_ = m.result.cloud;
+    first_ = m.result->cloud;
     first_skin_ = m.skin;
     nearest_.clear();
     if (m.skin) nearest_ = nearestPoints(first_, *m.skin);
@@ -113,11 +113,11 @@ class MotionScorer {
 
   void alongGaussians(const Moment& now) {
     Scores& s = scores(now);
-    s["flicker.gaussian_radiance"] = radianceFlicker(before_->result.cloud, now.result.cloud);
-    const auto &a = before_->result.materials, &b = now.result.materials;
-    if (a && b) s["flicker.gaussian_base_color"] = baseColorFlicker(before_->result.cloud, *a, *b);
+    s["flicker.gaussian_radiance"] = radianceFlicker(before_->result->cloud, now.result->cloud);
+    const auto &a = before_->result->materials, &b = now.result->materials;
+    if (a && b) s["flicker.gaussian_base_color"] = baseColorFlicker(before_->result->cloud, *a, *b);
     if (nearest_.empty() || !sameSkin(first_skin_, now)) return;
-    const Spread drift = drift_mm(first_, now.result.cloud, *first_skin_, *now.skin, nearest_);
+    const Spread drift = drift_mm(first_, now.result->cloud, *first_skin_, *now.skin, nearest_);
     s["drift.median_mm"] = drift.median;
     s["drift.p95_mm"] = drift.p95;
   }
@@ -132,16 +132,14 @@ class MotionScorer {
     }
     if (n == 0) return;
     scores(now)["flicker.radiance"] = sum.radiance / n;
-    if (before_->result.materials && now.result.materials)
+    if (before_->result->materials && now.result->materials)
       scores(now)["flicker.base_color"] = sum.base_color / n;
   }
 
-  const std::string& name(FrameIndex f) const {
-    return project_.capture().frames[static_cast<std::size_t>(f.value)];
-  }
+  const std::string& name(FrameIndex f) const { return nameOf(sequence_, f); }
   Scores& scores(const Moment& m) { return each_[name(m.frame)][""]; }
 
-  const Project& project_;
+  const GaussianSequence& sequence_;
   const GroundTruth* truth_;
   GBufferRenderer renderer_;
   PictureScores& each_;
@@ -190,10 +188,11 @@ Json worstOf(const PictureScores& each) {
 
 }  // namespace
 
-void scoreMotion(const Project& project, const std::vector<FrameIndex>& frames, const GroundTruth* truth,
-                 ComputeDevice& device, Progress& progress, PictureScores& each) {
+void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& views,
+                 const std::vector<FrameIndex>& frames, const GroundTruth* truth, ComputeDevice& device,
+                 Progress& progress, PictureScores& each) {
   progress.expect(static_cast<std::int64_t>(frames.size()));
-  MotionScorer scorer(project, truth, device, each);
+  MotionScorer scorer(sequence, views, truth, device, each);
   for (const FrameIndex frame : frames) {
     scorer.frame(frame);
     progress.step();

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "app/cli/ground_truth.h"
-#include "core/pipeline/project.h"
 #include "core/render/device.h"
+#include "core/scene/capture.h"
+#include "core/scene/gaussian_sequence.h"
 
 namespace beam {
 
@@ -17,9 +18,11 @@ namespace beam {
 // same points in all frames):
 //   "drift.median_mm", "drift.p95_mm"            against the first frame of the take
 //   "flicker.radiance", "flicker.base_color"     along the true points in maps of the test cameras, mean
-// A take is a run of neighbouring frames that are tracked.
-void scoreMotion(const Project& project, const std::vector<FrameIndex>& frames, const GroundTruth* truth,
-                 ComputeDevice& device, Progress& progress, PictureScores& each);
+// A take is a run of neighbouring frames that are tracked. `views`: of the capture, its test cameras among
+// them.
+void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& views,
+                 const std::vector<FrameIndex>& frames, const GroundTruth* truth, ComputeDevice& device,
+                 Progress& progress, PictureScores& each);
 
 // Means over frames of what scoreMotion found, as rows "drift" and "flicker"; nothing where it found nothing.
 ScoreTable motionTable(const PictureScores& each);

@@ -10,11 +10,10 @@
 #include "core/base/log.h"
 #include "core/stages/score_files.h"
 #include "core/stages/screening_file.h"
+#include "core/stages/step_ids.h"
 
 namespace beam {
 namespace {
-
-constexpr const char* kScoreStep = "surface.score";
 
 class Collector {
  public:
@@ -126,7 +125,7 @@ std::vector<LeftOutCamera> leftOutCameras(const Project& project) {
   for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
     const auto index = static_cast<std::int32_t>(f);
     try {
-      if (const auto folder = project.result("capture.screen", FrameIndex{index}))
+      if (const auto folder = project.result(kScreenStep, FrameIndex{index}))
         frames.push_back({project.capture().frames[f], index, readScreening(*folder).left_out});
     } catch (const Error& e) {
       logWarning("{}; what the frame was fitted without is not known", e.what());

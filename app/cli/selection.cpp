@@ -4,20 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/fields.h"
 #include "core/pipeline/frame_list.h"
-#include "core/stages/interpolated_frame.h"
 
 namespace beam {
 
-std::vector<ViewIndex> selectViews(const std::string& words, const CaptureSet& capture) {
-  std::vector<ViewIndex> chosen;
+std::vector<View> selectViews(const std::string& words, const CaptureSet& capture) {
+  std::vector<View> chosen;
   const auto addAll = [&](auto&& wanted) {
-    for (std::size_t v = 0; v < capture.views.size(); ++v) {
-      if (wanted(capture.views[v])) chosen.push_back({static_cast<std::int32_t>(v)});
-    }
+    std::copy_if(capture.views.begin(), capture.views.end(), std::back_inserter(chosen), wanted);
   };
   if (words == "all") {
     addAll([](const View&) { return true; });
@@ -46,20 +45,16 @@ std::vector<ViewIndex> selectViews(const std::string& words, const CaptureSet& c
   return chosen;
 }
 
-std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Project& project,
-                                           bool interpolated) {
-  if (list != "all") return parseFrameList(list, project.capture().frames);
+std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const GaussianSequence& sequence) {
+  if (list != "all") return parseFrameList(list, namesOf(sequence));
   std::vector<FrameIndex> solved;
-  for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
+  for (std::size_t f = 0; f < sequence.frames().size(); ++f) {
     const FrameIndex frame{static_cast<std::int32_t>(f)};
-    // Later frames of a take are not fitted anew.
-    const bool is_solved = project.state("surface.fit", frame) == StepState::Done ||
-                           project.state("surface.refine", frame) == StepState::Done;
-    if (is_solved || (interpolated && solvedAround(project, frame))) solved.push_back(frame);
+    if (sequence.content(frame).gaussians) solved.push_back(frame);
   }
   if (solved.empty()) {
     throw Error(Error::Kind::Data,
-                fmt::format("\"{}\": no frame is solved yet: beam run it first", project.folder().string()));
+                fmt::format("\"{}\": no frame is solved yet: beam run it first", sequence.id()));
   }
   return solved;
 }

@@ -51,10 +51,11 @@ std::optional<ViewIndex> Errand::cameraNamed(const QString& name) const {
 }
 
 std::optional<FrameIndex> Errand::frameNamed(const QString& name) const {
-  const auto& frames = window_.model().capture()->frames;
-  const auto found = std::find(frames.begin(), frames.end(), name.toStdString());
-  if (found == frames.end()) return std::nullopt;
-  return FrameIndex{static_cast<std::int32_t>(found - frames.begin())};
+  const ProjectModel& model = window_.model();
+  for (FrameIndex f{0}; f.value < model.frameCount(); ++f.value) {
+    if (model.nameOf(f) == name) return f;
+  }
+  return std::nullopt;
 }
 
 void Errand::show() {
@@ -106,7 +107,7 @@ bool Errand::playing() {
 void Errand::reportPlay() {
   const PlaybackClock& clock = window_.player().clock();
   const FrameCache& cache = window_.model().cache();
-  const std::vector<bool> held = cache.held(window_.model().capture()->frames.size());
+  const std::vector<bool> held = cache.held(*window_.model().sequence());
   std::printf("played %.2f of %g fps, %d dropped, %td frames in memory (%.0f of %.0f MB)\n", clock.rate(),
               clock.takeRate(), clock.dropped(), std::count(held.begin(), held.end(), true),
               1e-6 * static_cast<double>(cache.bytes()), 1e-6 * static_cast<double>(cache.budget()));

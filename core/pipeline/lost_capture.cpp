@@ -11,16 +11,12 @@
 
 #include "core/base/error.h"
 #include "core/io/file.h"
-#include "core/pipeline/frame_result.h"
 #include "core/pipeline/input_digests.h"
 #include "core/pipeline/project.h"
 
 namespace beam {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kImportStep = "capture.import";
-constexpr const char* kLightStep = "light.import";
 
 class NoPictures final : public FrameSource {
  public:
@@ -88,15 +84,17 @@ ImportedCapture captureFromResults(const Project& project) {
   found.set.source = std::make_shared<const NoPictures>();
   std::set<std::string> frames;
   for (const ResultRecord& record : recordsByAge(project.store())) {
-    const std::string& step = record.ingredients.step;
+    const StepShown shown = shownOf(project.setup().stages, record.ingredients.step);
     const fs::path folder = project.store().folderOf(record.key);
     std::error_code failed;
     if (!record.frame.empty()) frames.insert(record.frame);
-    if (step == kLightStep && fs::exists(folder / kEnvironmentFile, failed))
-      found.set.environment_file = (folder / kEnvironmentFile).string();
-    if (step != kImportStep || !fs::exists(folder / kCamerasFile, failed)) continue;
+    const auto has = [&](const std::string& file) {
+      return !file.empty() && fs::exists(folder / file, failed);
+    };
+    if (has(shown.panorama_file)) found.set.environment_file = (folder / shown.panorama_file).string();
+    if (!has(shown.cameras_file)) continue;
     try {
-      found.set.views = viewsOfCalibration(readTextFile(folder / kCamerasFile));
+      found.set.views = viewsOfCalibration(readTextFile(folder / shown.cameras_file));
     } catch (const Error& e) {
       found.warnings.emplace_back(e.what());
     }

@@ -50,8 +50,17 @@ std::vector<Turn> turnsOf(const Project& project, const std::vector<FrameIndex>&
   return turns;
 }
 
+// What the stages say of takes; "" where none does.
+std::string takeSetting(const Project& project, std::string TakeSettings::*name) {
+  for (const StageInfo& info : project.setup().stages.infos()) {
+    if (!(info.takes.*name).empty()) return info.takes.*name;
+  }
+  return {};
+}
+
 // `fallback`: of a pipeline that has no such setting.
-int setting(const Project& project, std::string_view name, int fallback) {
+int setting(const Project& project, std::string TakeSettings::*of, int fallback) {
+  const std::string name = takeSetting(project, of);
   for (const Field& field : project.fields()) {
     if (field.info.name != name) continue;
     if (const int* value = std::get_if<int>(&field.value)) return *value;
@@ -72,7 +81,7 @@ bool goesOnInItsTakes(const Project& project, const RunRequest& request) {
 
 void arrangeTakes(Project& project, const RunRequest& request) {
   if (goesOnInItsTakes(project, request)) return;
-  const int overlap = request.overlap ? *request.overlap : setting(project, "track.overlap", 0);
+  const int overlap = request.overlap ? *request.overlap : setting(project, &TakeSettings::overlap, 0);
   if (namesTakes(request)) {
     std::vector<Take> wanted = takesOfFrames(framesOf(project, request), request.every);
     for (Take& take : wanted) {
@@ -86,7 +95,7 @@ void arrangeTakes(Project& project, const RunRequest& request) {
   }
   const int frames = static_cast<int>(project.capture().frames.size());
   const int segment =
-      request.segment_frames ? *request.segment_frames : setting(project, "track.segment_frames", 50);
+      request.segment_frames ? *request.segment_frames : setting(project, &TakeSettings::segment_frames, 50);
   project.changeTakes(
       [&](std::vector<Take> takes) { return joinTakes(std::move(takes), frames, segment, overlap); });
 }

@@ -54,6 +54,15 @@ struct StepWork {
   std::string later_times = "";  // the same in later frames
 };
 
+// What can be seen of a result, told to those who show a project and do not know its steps.
+struct StepShown {
+  bool frame = false;        // a frame can be looked at from it, whatever the settings it was made with
+  std::string surface = "";  // full id of the step whose result it lies on, its own for that step; "": none
+  bool last = false;         // with it a frame has all there is to show: what is older is of no interest
+  // Files that a project without its capture is looked at by: its cameras, the panorama in force.
+  std::string cameras_file = "", panorama_file = "";
+};
+
 struct StepInfo {
   std::string id;           // inside its stage: "fit"; the full id is "surface.fit". Never renamed
   std::string title;        // "Fit appearance"
@@ -68,6 +77,7 @@ struct StepInfo {
   Frames frames = Frames::Every;
   Later later = {};
   StepWork work = {};
+  StepShown shown = {};
 };
 
 // Whether the step is for this frame of the take.
@@ -75,10 +85,17 @@ bool applies(const StepInfo& step, const Take& take, FrameIndex frame);
 // Everything it reads in any frame: inputs, later ones, those of the frame before.
 std::vector<std::string> readsOf(const StepInfo& step);
 
+// Full names of the settings that say how a run over all frames is cut into takes; "": there is none.
+struct TakeSettings {
+  std::string segment_frames = "";  // most frames a take claims; 0: as many as it can
+  std::string overlap = "";         // frames of lead
+};
+
 struct StageInfo {
   std::string id;  // "surface"
   std::string title, summary;
   std::vector<StepInfo> steps;  // in order
+  TakeSettings takes = {};
 };
 
 // What a step is given to work with, and where it leaves its files.

@@ -71,4 +71,13 @@ std::set<std::string> StageRegistry::readBefore(const std::set<std::string>& ste
   return before;
 }
 
+StepShown shownOf(const StageRegistry& stages, std::string_view step) {
+  for (const StageInfo& stage : stages.infos()) {
+    for (const StepInfo& info : stage.steps) {
+      if (stage.id + "." + info.id == step) return info.shown;
+    }
+  }
+  return {};
+}
+
 }  // namespace beam

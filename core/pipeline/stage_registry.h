@@ -41,5 +41,7 @@ class StageRegistry {
 // "surface.fit" -> "surface"; "fit".
 std::string stageOf(std::string_view step);
 std::string stepOf(std::string_view step);
+// Of a result by its step's full id; nothing of a step that this program does not have.
+StepShown shownOf(const StageRegistry& stages, std::string_view step);
 
 }  // namespace beam

@@ -37,13 +37,9 @@ bool followsFrames(const StageInfo& stage) {
                      [](const StepInfo& step) { return !step.later.previous.empty(); });
 }
 
-bool isShown(const std::string& step) {
-  return step == kMaterialsStep || step == kRefineStep || step == kFitStep || step == kMeshStep;
-}
-
-Digest surfaceOf(const KeyIngredients& made, const Digest& key) {
-  if (made.step == kRefineStep) return key;
-  const auto surface = made.upstream.find(kRefineStep);
+Digest surfaceOf(const StepShown& shown, const KeyIngredients& made, const Digest& key) {
+  if (made.step == shown.surface) return key;
+  const auto surface = made.upstream.find(shown.surface);
   return surface == made.upstream.end() ? Digest{} : surface->second;
 }
 
@@ -95,8 +91,8 @@ struct TakeSurveyor::Pass {
   std::set<Digest> results, failures, leases;
   std::set<std::pair<std::string, std::string>> made;  // step and frame that have a result of any key
   std::map<std::string, std::vector<double>> curves;
-  std::vector<std::string> stamps;     // by frame: keys of what is done
-  std::set<std::size_t> in_materials;  // frames whose materials are
+  std::vector<std::string> stamps;  // by frame: keys of what is done
+  std::set<std::size_t> complete;   // frames that have the last there is to show
 
   void draw(const std::string& step, const std::map<std::string, double>& scores, std::size_t frame) {
     for (const auto& [name, value] : scores) {
@@ -138,12 +134,14 @@ void TakeSurveyor::readRecords(const Project& project, Pass& pass) {
     if (known == records_.end() || !known->second.whole) {
       const std::optional<ResultRecord> found = project.store().record(key);
       if (!found) continue;
+      const StepShown shown = shownOf(project.setup().stages, found->ingredients.step);
       Record record{found->ingredients.step,
                     found->frame,
                     found->scores,
                     project.store().has(key),
                     found->lead,
-                    surfaceOf(found->ingredients, key),
+                    shown.frame,
+                    surfaceOf(shown, found->ingredients, key),
                     publishedAt(project.store().folderOf(key))};
       record.scores["seconds"] = found->seconds;
       known = records_.insert_or_assign(key, std::move(record)).first;
@@ -175,7 +173,7 @@ void TakeSurveyor::listLeftovers(const Pass& pass, TakeSurvey& survey) const {
     const auto known = records_.find(key);
     if (known == records_.end()) continue;
     const Record& r = known->second;
-    if (r.whole && isShown(r.step) && !leads_.contains(key))
+    if (r.whole && r.shown && !leads_.contains(key))
       found[r.frame].emplace_back(Age(!r.lead, r.published_ns), Leftover{r.step, key, r.surface});
   }
   survey.leftovers.resize(survey.frames.size());
@@ -206,7 +204,7 @@ void TakeSurveyor::surveyStep(const std::string& id, const StepInfo& step, Pass&
     }
     if (state != CellState::Done || !step.per_frame) continue;
     pass.stamps[f] += key.hex();
-    if (id == kMaterialsStep) pass.in_materials.insert(f);
+    if (step.shown.last) pass.complete.insert(f);
     pass.draw(id, records_.at(key).scores, f);
   }
 }
@@ -281,7 +279,7 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
   for (std::size_t f = 0; f < survey.frames.size(); ++f) {
     const auto stampOf = [](const std::string& text) { return text.empty() ? Digest{} : digestOf(text); };
     own.push_back(stampOf(pass.stamps[f]));
-    const bool settled = pass.in_materials.contains(f);
+    const bool settled = pass.complete.contains(f);
     survey.stamps.push_back(settled ? own[f] : stampOf(pass.stamps[f] + textOf(survey.leftovers[f])));
   }
   markInterpolated(project, own, survey);

@@ -11,10 +11,18 @@
 #include <string_view>
 #include <vector>
 
-#include "core/pipeline/frame_result.h"
 #include "core/pipeline/project.h"
 
 namespace beam {
+
+// A finished result that a frame can be looked at from (StepShown), with whatever settings it was made.
+struct Leftover {
+  std::string step;
+  Digest key;
+  Digest surface;  // of the result that it lies on, StepShown::surface; zero: none
+  bool operator==(const Leftover&) const = default;
+};
+using Leftovers = std::vector<Leftover>;  // of a frame, the newest first
 
 enum class CellState {
   Empty,
@@ -46,8 +54,8 @@ struct TakeSurvey {
   // By frame: what it can be shown from, whatever the settings; no leads of takes in force.
   std::vector<Leftovers> leftovers;
   // By frame: changes when what is to be shown of it may change, by a result of its own, of those that it
-  // lies between, or by what is left over while it has no materials of the settings in force; zero: there is
-  // nothing.
+  // lies between, or by what is left over while it lacks the last there is to show (StepShown::last) of the
+  // settings in force; zero: there is nothing.
   std::vector<Digest> stamps;
 
   const SurveyCurve* curve(std::string_view name) const;  // null: there is none
@@ -68,6 +76,7 @@ class TakeSurveyor {
     std::map<std::string, double> scores;
     bool whole = false;  // every file was there with its size
     bool lead = false;   // made for a take that does not own the frame
+    bool shown = false;  // see Leftover
     Digest surface;      // see Leftover
     std::int64_t published_ns = 0;
   };

@@ -10,6 +10,7 @@
 #include "core/pipeline/input_digests.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/screening_file.h"
+#include "core/stages/step_ids.h"
 #include "core/stages/training_input.h"
 
 namespace beam {
@@ -49,12 +50,13 @@ class CaptureStage final : public StageOf<CaptureOptions> {
                                             .title = "Import the capture",
                                             .per_frame = false,
                                             .reads = {Reads::Calibration},
-                                            .weight = 0.1},
+                                            .weight = 0.1,
+                                            .shown = {.cameras_file = kCamerasFile}},
                                            {.id = "screen",
                                             .title = "Look for bad cameras",
                                             .version = 2,
                                             .reads = {Reads::Pictures},
-                                            .inputs = {"capture.import"},
+                                            .inputs = {kImportStep},
                                             .weight = 0.5,
                                             .work = {.photographs = true, .pixels = true}}}};
     return kInfo;

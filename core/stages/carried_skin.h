@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/method/follow_surface.h"
+#include "core/scene/gaussian_sequence.h"
 
 namespace beam {
 
@@ -16,5 +17,7 @@ bool isCarried(const std::filesystem::path& skin);
 // anew; null: its joints stay empty.
 CarriedSkin readCarriedSkin(GaussianCloud cloud, const std::filesystem::path& skin,
                             const std::filesystem::path* joints);
+// Without the Gaussians.
+CarriedPose readCarriedPose(const std::filesystem::path& skin, const std::filesystem::path& joints);
 
 }  // namespace beam

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/image_file.h"
-#include "core/pipeline/frame_result.h"
 #include "core/scene/environment.h"
 #include "core/stages/builtin_stages.h"
+#include "core/stages/result_files.h"
 
 namespace beam {
 namespace {
@@ -33,7 +33,8 @@ class LightStage final : public StageOf<LightOptions> {
                                             .title = "Import the panorama",
                                             .per_frame = false,
                                             .reads = {Reads::Environment},
-                                            .weight = 0.1}}};
+                                            .weight = 0.1,
+                                            .shown = {.panorama_file = kEnvironmentFile}}}};
     return kInfo;
   }
 

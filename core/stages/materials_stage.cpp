@@ -6,9 +6,10 @@
 #include "core/method/bake_materials.h"
 #include "core/method/evaluate_motion.h"
 #include "core/method/fit_materials.h"
-#include "core/pipeline/frame_result.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/material_map_files.h"
+#include "core/stages/result_files.h"
+#include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
 #include "core/stages/training_input.h"
 
@@ -37,7 +38,7 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                    .title = "Bake maps",
                    .source = "BEAM 3.2, eq. 3 and 20",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "capture.screen", "light.import", "surface.refine"},
+                   .inputs = {kImportStep, kScreenStep, kLightStep, kRefineStep},
                    .weight = 20,
                    .work = {.photographs = true,
                             .pixels = true,
@@ -48,10 +49,11 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                    .title = "Fit materials",
                    .source = "BEAM 3.2",
                    .version = 3,
-                   .inputs = {"capture.import", "capture.screen", "surface.refine", "materials.bake"},
+                   .inputs = {kImportStep, kScreenStep, kRefineStep, kBakeStep},
                    .weight = 10,
-                   .later = {.inputs = {"track.joints"}, .previous = {"materials.fit"}},
-                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale}}}};
+                   .later = {.inputs = {kJointsStep}, .previous = {kMaterialsStep}},
+                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale},
+                   .shown = {.frame = true, .surface = kRefineStep, .last = true}}}};
     return kInfo;
   }
 
@@ -59,11 +61,11 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
 
  private:
   static GaussianCloud cloudOf(const StepContext& c) {
-    return readSplatPly(c.input("surface.refine") / kCloudFile).cloud;
+    return readSplatPly(c.input(kRefineStep) / kCloudFile).cloud;
   }
 
   void bake(StepContext& c) const {
-    const Environment light = makeEnvironment(readRadiance(c.input("light.import") / kEnvironmentFile));
+    const Environment light = makeEnvironment(readRadiance(c.input(kLightStep) / kEnvironmentFile));
     const LentViews lent = trainingViews(c);
     const std::vector<FrameView>& views = lent.all();
     const std::filesystem::path folder = c.folder / kMapsFolder;
@@ -75,7 +77,7 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
   }
 
   void fit(StepContext& c) const {
-    const std::filesystem::path folder = c.input("materials.bake") / kMapsFolder;
+    const std::filesystem::path folder = c.input(kBakeStep) / kMapsFolder;
     std::vector<View> baked;
     for (const View& view : trainingCalibration(c)) {
       if (hasMaterialMaps(folder, view.name)) baked.push_back(view);
@@ -91,12 +93,12 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
   }
 
   Materials materialsOf(StepContext& c, const MapSource& maps, const GaussianCloud& cloud) const {
-    const bool follows = c.later() && !readTrackNote(c.input("track.joints")).restarted;
+    const bool follows = c.later() && !readTrackNote(c.input(kJointsStep)).restarted;
     if (!follows) {
       return fitMaterials(maps, cloud, static_cast<float>(options_.bake.roughness), options_.fit, c.device,
                           c.progress);
     }
-    const SplatFile before = readSplatPly(*c.previousResult("materials.fit") / kMaterialsFile);
+    const SplatFile before = readSplatPly(*c.previousResult(kMaterialsStep) / kMaterialsFile);
     Materials materials =
         fitLaterMaterials(maps, cloud, {before.cloud, *before.materials}, options_.fit, c.device, c.progress);
     c.scores["flicker_base_color"] = baseColorFlicker(before.cloud, *before.materials, materials);

@@ -12,9 +12,8 @@
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/math/color.h"
-#include "core/pipeline/frame_result.h"
 #include "core/render/deferred.h"
-#include "core/stages/interpolated_frame.h"
+#include "core/scene/transform.h"
 
 namespace beam {
 namespace {
@@ -36,9 +35,9 @@ bool needsMaterials(const std::string& channel) {
 
 class ChannelWriter {
  public:
-  ChannelWriter(const Project& project, const RenderRequest& request, ComputeDevice& device)
-      : project_(project), request_(request), renderer_(device) {
-    if (!request.world_frame) to_frame_ = glm::transpose(worldFromCapture(project.capture().up));
+  ChannelWriter(const GaussianSequence& sequence, const RenderRequest& request, ComputeDevice& device)
+      : sequence_(sequence), request_(request), renderer_(device) {
+    if (!request.world_frame) frame_from_world_ = sequence.captureFromWorld();
     if (!wants("relight")) return;
     for (const fs::path& file : request.environments) {
       lights_.push_back({file.stem().string(), PreparedLight(makeEnvironment(readRadiance(file)))});
@@ -46,13 +45,12 @@ class ChannelWriter {
   }
 
   void frame(FrameIndex frame, Progress& progress) {
-    const std::string& name = project_.capture().frames[frame.value];
+    const std::string& name = nameOf(sequence_, frame);
     if (wants("mesh")) mesh(frame, name);
     const bool pictures = std::any_of(request_.channels.begin(), request_.channels.end(),
                                       [](const auto& c) { return c != "mesh"; });
     if (!pictures) return progress.step(static_cast<std::int64_t>(request_.views.size()));
-    const std::optional<FrameResult> result =
-        request_.interpolate ? loadShownFrame(project_, frame) : loadFrameResult(project_, frame);
+    const std::shared_ptr<const GaussianFrame> result = sequence_.load(frame);
     if (!result)
       throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", name));
     if (result->interpolated) logInfo("frame {} is interpolated", name);
@@ -62,8 +60,8 @@ class ChannelWriter {
           Error::Kind::Data,
           fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, channel));
     }
-    for (const ViewIndex view : request_.views) {
-      picture(*result, project_.capture().views[view.value], name);
+    for (const View& view : request_.views) {
+      picture(*result, view, name);
       progress.step();
     }
   }
@@ -80,16 +78,15 @@ class ChannelWriter {
   }
 
   void mesh(FrameIndex frame, const std::string& name) const {
-    std::optional<Mesh> m = loadFrameMesh(project_, frame);
-    if (!m && request_.interpolate && solvedAround(project_, frame))
+    const std::shared_ptr<const Mesh> m = sequence_.mesh(frame);
+    if (!m && sequence_.content(frame).interpolated)
       return logInfo("frame {} is interpolated: it has no mesh", name);
     if (!m) throw Error(Error::Kind::Data, fmt::format("frame {} has no mesh yet: run Surface first", name));
-    for (vec3& v : m->vertices) v = vec3(to_frame_ * dvec3(v));
     fs::create_directories(request_.out / "mesh");
-    writeMeshPly(request_.out / "mesh" / (name + ".ply"), *m);
+    writeMeshPly(request_.out / "mesh" / (name + ".ply"), transformed(*m, frame_from_world_));
   }
 
-  void picture(const FrameResult& r, const View& view, const std::string& name) {
+  void picture(const GaussianFrame& r, const View& view, const std::string& name) {
     const GBuffer g = renderer_.render(r.cloud, r.materials ? &*r.materials : nullptr, view.camera);
     const std::string &camera = view.name, png = name + ".png", exr = name + ".exr";
     if (wants("rgb")) writePng(file("rgb", camera, png), bytesOf(g.radiance, false));
@@ -102,8 +99,8 @@ class ChannelWriter {
     if (wants("roughness"))
       writeExr(file("roughness", camera, exr), planesOf(g.roughness), {"Y"}, ExrPrecision::Half);
     if (wants("normal")) {
-      writeExr(file("normal", camera, exr), planesOf(g.normal_world, to_frame_), {"R", "G", "B"},
-               ExrPrecision::Half);
+      writeExr(file("normal", camera, exr), planesOf(g.normal_world, frame_from_world_.rotation),
+               {"R", "G", "B"}, ExrPrecision::Half);
     }
     if (wants("depth")) writeExr(file("depth", camera, exr), planesOf(g.depth_m), {"Y"}, ExrPrecision::Float);
     if (wants("alpha")) {
@@ -122,10 +119,10 @@ class ChannelWriter {
     PreparedLight prepared;
   };
 
-  const Project& project_;
+  const GaussianSequence& sequence_;
   const RenderRequest& request_;
   GBufferRenderer renderer_;
-  dmat3 to_frame_ = dmat3(1.0);
+  Similarity3 frame_from_world_;
   std::vector<Light> lights_;
 };
 
@@ -137,7 +134,7 @@ const std::vector<std::string>& renderChannelNames() {
   return kNames;
 }
 
-void renderChannels(const Project& project, const RenderRequest& request, ComputeDevice& device,
+void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, ComputeDevice& device,
                     Progress& progress) {
   for (const std::string& c : request.channels) {
     const auto& known = renderChannelNames();
@@ -150,7 +147,7 @@ void renderChannels(const Project& project, const RenderRequest& request, Comput
     }
   }
   progress.expect(static_cast<std::int64_t>(request.frames.size() * request.views.size()));
-  ChannelWriter writer(project, request, device);
+  ChannelWriter writer(sequence, request, device);
   for (const FrameIndex f : request.frames) writer.frame(f, progress);
 }
 

@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/pipeline/project.h"
 #include "core/render/device.h"
+#include "core/scene/capture.h"
+#include "core/scene/gaussian_sequence.h"
 
 namespace beam {
 
 struct RenderRequest {
   std::vector<std::string> channels;  // of renderChannelNames(), "mesh"
-  std::vector<ViewIndex> views;
+  std::vector<View> views;
   std::vector<FrameIndex> frames;
   std::vector<std::filesystem::path> environments;  // for "relight": a folder relight_<stem> each
-  bool interpolate = false;  // frames without a result between two of a take with a stride, too
   bool world_frame = false;  // normals and meshes in world axes instead of the capture's
   std::filesystem::path out;
 };
@@ -29,7 +29,7 @@ const std::vector<std::string>& renderChannelNames();
 
 // Throws Error{Usage} for an unknown channel or relight without a panorama, Error{Data} when a frame is not
 // solved as far as a channel needs.
-void renderChannels(const Project& project, const RenderRequest& request, ComputeDevice& device,
+void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, ComputeDevice& device,
                     Progress& progress);
 
 }  // namespace beam

@@ -9,11 +9,12 @@
 #include "core/method/fit_surface.h"
 #include "core/method/follow_surface.h"
 #include "core/method/score_views.h"
-#include "core/pipeline/frame_result.h"
 #include "core/scene/pose.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/carried_skin.h"
+#include "core/stages/result_files.h"
 #include "core/stages/score_files.h"
+#include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
 #include "core/stages/training_input.h"
 
@@ -48,7 +49,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .title = "Seed points",
                    .source = "BEAM 3.1",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "capture.screen"},
+                   .inputs = {kImportStep, kScreenStep},
                    .weight = 1,
                    .frames = Frames::FirstOfTake,
                    .work = {.photographs = true}},
@@ -57,30 +58,33 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .source = "BEAM 3.1, eq. 8",
                    .version = 2,
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "capture.screen", "surface.seed"},
+                   .inputs = {kImportStep, kScreenStep, kSeedStep},
                    .weight = 45,
-                   .later = {.inputs = {"track.joints"}, .previous = {"track.joints", "surface.refine"}},
-                   .work = kFitWork},
+                   .later = {.inputs = {kJointsStep}, .previous = {kJointsStep, kRefineStep}},
+                   .work = kFitWork,
+                   .shown = {.frame = true}},
                   {.id = "refine",
                    .title = "Refine geometry",
                    .source = "BEAM 3.1, E_normal",
                    .reads = {Reads::Pictures},
-                   .inputs = {"capture.import", "capture.screen", "surface.fit"},
+                   .inputs = {kImportStep, kScreenStep, kFitStep},
                    .weight = 45,
-                   .later = {.inputs = {"track.joints"}, .previous = {"surface.refine"}},
-                   .work = kFitWork},
+                   .later = {.inputs = {kJointsStep}, .previous = {kRefineStep}},
+                   .work = kFitWork,
+                   .shown = {.frame = true, .surface = kRefineStep}},
                   {.id = "score",
                    .title = "Score against the photographs",
                    .reads = {Reads::Pictures, Reads::HeldOut},
-                   .inputs = {"capture.import", "capture.screen", "surface.refine"},
+                   .inputs = {kImportStep, kScreenStep, kRefineStep},
                    .weight = 2,
-                   .later = {.previous = {"surface.refine"}},
+                   .later = {.previous = {kRefineStep}},
                    .work = {.photographs = true, .pixels = true, .downscale = kDownscale}},
                   {.id = "mesh",
                    .title = "Fuse a mesh",
-                   .inputs = {"capture.import", "capture.screen", "surface.refine"},
+                   .inputs = {kImportStep, kScreenStep, kRefineStep},
                    .weight = 4,
-                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale}}}};
+                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale},
+                   .shown = {.frame = true, .surface = kRefineStep}}}};
     return kInfo;
   }
 
@@ -107,14 +111,14 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     const LentViews lent = trainingViews(c);
     const std::vector<FrameView>& views = lent.all();
     if (!c.later()) {
-      const PointCloud seeds = readPointsPly(c.input("surface.seed") / kSeedsFile);
+      const PointCloud seeds = readPointsPly(c.input(kSeedStep) / kSeedsFile);
       return keep(c, fitAppearance(views, seeds, options_.fit, c.device, c.progress, c.preview),
                   seeds.position_m.size());
     }
     if (restarted(c)) return fitAnew(c, views);
     const Carried in = carried(c);
-    const Pose tracked_before = poseOf(readSplatPly(*c.previousResult("track.joints") / kJointsFile).cloud);
-    const Pose tracked = poseOf(readSplatPly(c.input("track.joints") / kJointsFile).cloud);
+    const Pose tracked_before = poseOf(readSplatPly(*c.previousResult(kJointsStep) / kJointsFile).cloud);
+    const Pose tracked = poseOf(readSplatPly(c.input(kJointsStep) / kJointsFile).cloud);
     const Pose start = carriedJoints(tracked_before, in.previous.joints, tracked);
     keepSkin(c, followAppearance(views, {in.previous, in.rest_joints, start}, options_.fit, options_.later,
                                  c.device, c.progress, c.preview));
@@ -123,7 +127,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
   void refine(StepContext& c) const {
     const LentViews lent = trainingViews(c);
     const std::vector<FrameView>& views = lent.all();
-    const std::filesystem::path& fitted = c.input("surface.fit");
+    const std::filesystem::path& fitted = c.input(kFitStep);
     GaussianCloud cloud = readSplatPly(fitted / kCloudFile).cloud;
     if (!c.later() || restarted(c)) {
       return keep(c, refineGeometry(views, cloud, options_.fit, c.device, c.progress, c.preview),
@@ -136,7 +140,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                                options_.later, c.device, c.progress, c.preview));
   }
 
-  static bool restarted(const StepContext& c) { return readTrackNote(c.input("track.joints")).restarted; }
+  static bool restarted(const StepContext& c) { return readTrackNote(c.input(kJointsStep)).restarted; }
 
   // Nothing of the frame before fits here: a first frame in the middle of a take.
   void fitAnew(StepContext& c, const std::vector<FrameView>& views) const {
@@ -152,15 +156,14 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
   };
 
   static Carried carried(const StepContext& c) {
-    const std::filesystem::path& before = *c.previousResult("surface.refine");
-    return {
-        readCarriedSkin(readSplatPly(before / kCloudFile).cloud, before, c.previousResult("track.joints")),
-        readPosePly(c.input("track.joints") / kRestPoseFile)};
+    const std::filesystem::path& before = *c.previousResult(kRefineStep);
+    return {readCarriedSkin(readSplatPly(before / kCloudFile).cloud, before, c.previousResult(kJointsStep)),
+            readPosePly(c.input(kJointsStep) / kRestPoseFile)};
   }
 
   // At the resolution of the fit; `beam evaluate` scores the whole pictures.
   void score(StepContext& c) const {
-    const GaussianCloud cloud = readSplatPly(c.input("surface.refine") / kCloudFile).cloud;
+    const GaussianCloud cloud = readSplatPly(c.input(kRefineStep) / kCloudFile).cloud;
     std::vector<ViewScore> scores;
     for (const bool held_out : {false, true}) {
       Progress part = c.progress.part(0.48, held_out ? "held-out views" : "training views");
@@ -182,12 +185,12 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     }
     writeScores(c.folder, scores, trainingDownscale(c));
     if (!c.later()) return;
-    const GaussianCloud before = readSplatPly(*c.previousResult("surface.refine") / kCloudFile).cloud;
+    const GaussianCloud before = readSplatPly(*c.previousResult(kRefineStep) / kCloudFile).cloud;
     if (isTracked(before, cloud)) c.scores["flicker_radiance"] = radianceFlicker(before, cloud);
   }
 
   void mesh(StepContext& c) const {
-    const GaussianCloud cloud = readSplatPly(c.input("surface.refine") / kCloudFile).cloud;
+    const GaussianCloud cloud = readSplatPly(c.input(kRefineStep) / kCloudFile).cloud;
     const Mesh mesh = extractMesh(cloud, trainingCameras(c), options_.mesh, c.device, c.progress);
     writeMeshPly(c.folder / kMeshFile, mesh);
     c.scores["triangles"] = static_cast<double>(mesh.triangles.size());

@@ -7,16 +7,16 @@
 #include "core/math/statistics.h"
 #include "core/method/fit_surface.h"
 #include "core/method/track_joints.h"
-#include "core/pipeline/frame_result.h"
 #include "core/scene/pose.h"
 #include "core/stages/builtin_stages.h"
+#include "core/stages/result_files.h"
+#include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
 #include "core/stages/training_input.h"
 
 namespace beam {
 namespace {
 
-constexpr const char* kJointsStep = "track.joints";
 constexpr const char* kBeforeFile = "before.ply";  // pose of the frame before: the velocity
 constexpr double kSeedShare = 0.4;                 // seeds as a share of the joints; growth adds the rest
 
@@ -59,24 +59,26 @@ void describe(Fields& f, TrackOptions& o) {
 class TrackStage final : public StageOf<TrackOptions> {
  public:
   const StageInfo& info() const override {
-    static const StageInfo kInfo{.id = "track",
-                                 .title = "Track",
-                                 .summary =
-                                     "Follows coarse Gaussians, the joints, through a take; they carry the "
-                                     "fine ones of every later frame.",
-                                 .steps = {{.id = "joints",
-                                            .title = "Track joints",
-                                            .source = "BEAM 3.1, eq. 9",
-                                            .version = 2,
-                                            .reads = {Reads::Pictures},
-                                            .inputs = {"capture.import", "capture.screen"},
-                                            .weight = 30,
-                                            .frames = Frames::InTakes,
-                                            .later = {.previous = {kJointsStep}},
-                                            .work = {.pixels = true,
-                                                     .downscale = kDownscale,
-                                                     .times = "track.first_iterations",
-                                                     .later_times = "track.iterations"}}}};
+    static const StageInfo kInfo{
+        .id = "track",
+        .title = "Track",
+        .summary =
+            "Follows coarse Gaussians, the joints, through a take; they carry the "
+            "fine ones of every later frame.",
+        .steps = {{.id = "joints",
+                   .title = "Track joints",
+                   .source = "BEAM 3.1, eq. 9",
+                   .version = 2,
+                   .reads = {Reads::Pictures},
+                   .inputs = {kImportStep, kScreenStep},
+                   .weight = 30,
+                   .frames = Frames::InTakes,
+                   .later = {.previous = {kJointsStep}},
+                   .work = {.pixels = true,
+                            .downscale = kDownscale,
+                            .times = "track.first_iterations",
+                            .later_times = "track.iterations"}}},
+        .takes = {.segment_frames = "track.segment_frames", .overlap = "track.overlap"}};
     return kInfo;
   }
 

@@ -2,6 +2,7 @@
 #include "core/stages/training_input.h"
 
 #include "core/stages/screening_file.h"
+#include "core/stages/step_ids.h"
 
 namespace beam {
 namespace {
@@ -15,9 +16,7 @@ LentViews viewsThat(const StepContext& context, const FrameStore::Wanted& wanted
   return LentViews(std::move(views));
 }
 
-FrameScreening screeningOf(const StepContext& context) {
-  return readScreening(context.input("capture.screen"));
-}
+FrameScreening screeningOf(const StepContext& context) { return readScreening(context.input(kScreenStep)); }
 
 }  // namespace
 

@@ -36,8 +36,7 @@ const std::map<std::string, Rooms>& allowed() {
       {"core/sample", plus(kScene, {"core/io", "core/render"})},
       {"core/stages", plus(kScene, {"core/io", "core/render", "core/method", "core/pipeline"})},
       {"viewers", plus(kScene, {"core/render"})},
-      {"ui",
-       plus(kScene, {"core/io", "core/optim", "core/pipeline", "core/render", "core/stages", "viewers"})},
+      {"ui", plus(kScene, {"core/io", "core/pipeline", "core/render", "core/stages", "viewers"})},
   };
   return kLaw;
 }

@@ -10,9 +10,10 @@
 #include "core/io/file.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
-#include "core/pipeline/frame_result.h"
 #include "core/pipeline/runner.h"
 #include "core/scene/pose.h"
+#include "core/stages/result_files.h"
+#include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
 #include "tests/support/sphere_capture.h"
 #include "tests/support/splat_shapes.h"
@@ -165,20 +166,27 @@ std::shared_ptr<PipelineSetup> standInPipeline() {
        "Surface",
        "Fits Gaussians to the photographs.",
        {{.id = "seed", .title = "Seed", .reads = pictures},
-        {.id = "fit", .title = "Fit", .inputs = {"surface.seed"}},
+        {.id = "fit", .title = "Fit", .inputs = {kSeedStep}, .shown = {.frame = true}},
         {.id = "refine",
          .title = "Refine",
-         .inputs = {"surface.fit"},
-         .later = {.previous = {"surface.refine"}}},
-        {.id = "mesh", .title = "Mesh", .inputs = {"surface.refine"}}}});
+         .inputs = {kFitStep},
+         .later = {.previous = {kRefineStep}},
+         .shown = {.frame = true, .surface = kRefineStep}},
+        {.id = "mesh",
+         .title = "Mesh",
+         .inputs = {kRefineStep},
+         .shown = {.frame = true, .surface = kRefineStep}}}});
   add({"track",
        "Track",
        "Follows the subject from frame to frame.",
-       {{.id = "joints", .title = "Joints", .inputs = {"surface.refine"}}}});
+       {{.id = "joints", .title = "Joints", .inputs = {kRefineStep}}}});
   add({"materials",
        "Materials",
        "Tells colour from light.",
-       {{.id = "fit", .title = "Fit", .inputs = {"surface.refine"}}}});
+       {{.id = "fit",
+         .title = "Fit",
+         .inputs = {kRefineStep},
+         .shown = {.frame = true, .surface = kRefineStep, .last = true}}}});
   setup->presets = fs::path(BEAM_SOURCE_DIR) / "tests/support/presets";
   setup->open_capture = openStandIn;
   return setup;

@@ -18,6 +18,8 @@
 #include "core/io/splat_ply.h"
 #include "core/scene/pose.h"
 #include "core/stages/carried_skin.h"
+#include "core/stages/result_files.h"
+#include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
 #include "tests/support/splat_shapes.h"
 #include "tests/support/temp_dir.h"
@@ -180,20 +182,30 @@ class Timeline : public ::testing::Test {
                     "Surface",
                     "",
                     {{.id = "seed", .title = "Seed", .reads = pictures},
-                     {.id = "fit", .title = "Fit", .inputs = {"surface.seed"}},
+                     {.id = "fit", .title = "Fit", .inputs = {kSeedStep}, .shown = {.frame = true}},
                      {.id = "refine",
                       .title = "Refine",
-                      .inputs = {"surface.fit"},
-                      .later = {.previous = {"surface.refine"}}},
-                     {.id = "mesh", .title = "Mesh", .inputs = {"surface.refine"}}}});
+                      .inputs = {kFitStep},
+                      .later = {.previous = {kRefineStep}},
+                      .shown = {.frame = true, .surface = kRefineStep}},
+                     {.id = "mesh",
+                      .title = "Mesh",
+                      .inputs = {kRefineStep},
+                      .shown = {.frame = true, .surface = kRefineStep}}}});
     });
     setup->stages.add([] {
-      return std::make_unique<BallStage>(StageInfo{
-          "materials", "Materials", "", {{.id = "fit", .title = "Fit", .inputs = {"surface.refine"}}}});
+      return std::make_unique<BallStage>(
+          StageInfo{"materials",
+                    "Materials",
+                    "",
+                    {{.id = "fit",
+                      .title = "Fit",
+                      .inputs = {kRefineStep},
+                      .shown = {.frame = true, .surface = kRefineStep, .last = true}}}});
     });
     setup->stages.add([] {
-      return std::make_unique<BallStage>(StageInfo{
-          "track", "Track", "", {{.id = "joints", .title = "Joints", .inputs = {"surface.refine"}}}});
+      return std::make_unique<BallStage>(
+          StageInfo{"track", "Track", "", {{.id = "joints", .title = "Joints", .inputs = {kRefineStep}}}});
     });
     setup->open_capture = take;
     const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
@@ -366,7 +378,7 @@ TEST_F(SolvedTimeline, PlaysInTheRangeFromMemoryAndSaysTheRate) {
   EXPECT_FALSE(window.player().playing());
   ASSERT_TRUE(waitFor([&] { return window.settled(); }));
   EXPECT_TRUE(window.model().values().materials);
-  const std::vector<bool> held = window.model().cache().held(kFrames);
+  const std::vector<bool> held = window.model().cache().held(*window.model().sequence());
   EXPECT_EQ(std::count(held.begin() + 1, held.begin() + 5, true), 4);
 }
 

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "core/base/log.h"
-#include "core/pipeline/frame_result.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
 namespace beam::testing {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames between those of a scout run, over a pipeline whose steps write a stick that turns.
-#include "core/stages/interpolated_frame.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <future>
 #include <optional>
 #include <set>
 #include <utility>
@@ -12,7 +11,9 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/pipeline/take_survey.h"
+#include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
+#include "core/stages/result_files.h"
 #include "core/stages/track_files.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
@@ -113,8 +114,9 @@ const Scout& solved() {
 TEST(InterpolatedFrame, ShowsWhatLiesBetweenItsFrames) {
   const Project project = solved().project();
   for (const int f : {1, 2, 4, 5}) {
-    EXPECT_FALSE(loadFrameResult(project, {f})) << "nothing is kept of it";
-    const auto shown = loadShownFrame(project, {f});
+    EXPECT_FALSE(sequenceOf(project, Shows::Solved)->load({f})) << "nothing is kept of it";
+    const auto sequence = sequenceOf(project, Shows::Between);
+    const auto shown = sequence->load({f});
     ASSERT_TRUE(shown) << f;
     EXPECT_TRUE(shown->interpolated);
     EXPECT_TRUE(shown->refined);
@@ -123,35 +125,76 @@ TEST(InterpolatedFrame, ShowsWhatLiesBetweenItsFrames) {
       EXPECT_LT(glm::length(shown->cloud.position_m[i] - expected.position_m[i]), 1e-5f) << f << " " << i;
     ASSERT_TRUE(shown->materials);
     EXPECT_NEAR(shown->materials->roughness[5], 0.1f + 0.1f * static_cast<float>(f), 1e-5);
-    EXPECT_TRUE(solvedAround(project, {f}));
+    EXPECT_TRUE(sequence->content({f}).interpolated);
+    EXPECT_EQ(sequence->before({f}), FrameIndex{f < 3 ? 0 : 3});
   }
 }
 
 TEST(InterpolatedFrame, HasJointsBetweenThoseOfItsNeighbours) {
   const Project project = solved().project();
-  const auto joints = jointsBetween(project, {{3}, {6}, 1.0 / 3});
-  ASSERT_TRUE(joints);
+  const auto sequence = sequenceOf(project, Shows::Between);
+  const FrameJoints joints = sequence->joints({4});
+  ASSERT_EQ(joints.pose.size(), 12u);
+  EXPECT_TRUE(joints.interpolated);
   const GaussianCloud expected = stickAt(4);
   for (std::size_t i = 0; i < 12; ++i)
-    EXPECT_LT(glm::length(joints->position_m[i] - expected.position_m[i]), 1e-5f) << i;
-  EXPECT_FALSE(jointsBetween(project, {{6}, {7}, 0.5})) << "7 has none";
-  EXPECT_FALSE(jointsBetween(Scout({6}).project(), {{3}, {6}, 0.5})) << "others";
+    EXPECT_LT(glm::length(joints.pose.position_m[i] - expected.position_m[i]), 1e-5f) << i;
+  EXPECT_EQ(sequence->joints({7}).pose.size(), 0u) << "behind the last";
+  EXPECT_EQ(sequenceOf(Scout({6}).project(), Shows::Between)->joints({4}).pose.size(), 0u) << "others";
 }
 
 TEST(InterpolatedFrame, LeavesItsOwnFramesAloneAndHasNothingBehindTheLast) {
   const Project project = solved().project();
-  EXPECT_FALSE(loadShownFrame(project, {3})->interpolated);
-  EXPECT_FALSE(solvedAround(project, {3}));
-  EXPECT_FALSE(loadShownFrame(project, {7}));
-  EXPECT_FALSE(solvedAround(project, {7}));
+  const auto sequence = sequenceOf(project, Shows::Between);
+  EXPECT_FALSE(sequence->load({3})->interpolated);
+  EXPECT_FALSE(sequence->content({3}).interpolated);
+  EXPECT_FALSE(sequence->load({7}));
+  EXPECT_FALSE(sequence->content({7}).gaussians);
 }
 
 TEST(InterpolatedFrame, HasNothingWhereTheJointsStartedAnew) {
   const Scout scout({6});
-  const Project project = scout.project();
-  EXPECT_TRUE(loadShownFrame(project, {2}));
-  EXPECT_FALSE(loadShownFrame(project, {4}));
-  EXPECT_FALSE(solvedAround(project, {4}));
+  const auto sequence = sequenceOf(scout.project(), Shows::Between);
+  EXPECT_TRUE(sequence->load({2}));
+  EXPECT_FALSE(sequence->load({4}));
+  EXPECT_FALSE(sequence->content({4}).gaussians);
+}
+
+TEST(ProjectSequence, TellsOfATakeWhatItsFramesHangOn) {
+  const auto sequence = sequenceOf(solved().project(), Shows::Solved);
+  const auto take = sequence->take({6});
+  ASSERT_TRUE(take);
+  EXPECT_EQ(take->first, FrameIndex{0});
+  EXPECT_TRUE(take->restarts.empty());
+  EXPECT_EQ(take->rest_joints.position_m, poseOf(stickAt(0)).position_m);
+  EXPECT_EQ(take->binding.points(), 12u);
+  EXPECT_EQ(sequence->before({6}), FrameIndex{3});
+  EXPECT_EQ(sequence->before({0}), std::nullopt);
+  const auto carried = sequence->carried({6});
+  ASSERT_TRUE(carried);
+  EXPECT_EQ(carried->rest_skin.position_m, poseOf(stickAt(0)).position_m) << "its own, on the joints at rest";
+  EXPECT_EQ(carried->joints.position_m, poseOf(stickAt(6)).position_m);
+  EXPECT_FALSE(sequence->take({7})) << "in no take";
+  const auto anew = sequenceOf(Scout({6}).project(), Shows::Solved)->take({3});
+  EXPECT_EQ(anew->restarts, std::vector<FrameIndex>{FrameIndex{6}});
+}
+
+TEST(ProjectSequence, AnswersSeveralThreadsAtOnceAndAlike) {
+  const auto sequence = sequenceOf(solved().project(), Shows::Between);
+  const auto all = [&] {
+    std::vector<vec3> positions;
+    for (int f = 0; f < 7; ++f) {
+      EXPECT_TRUE(sequence->content({f}).materials);
+      EXPECT_NE(sequence->stamp({f}), Digest{});
+      const auto frame = sequence->load({f});
+      positions.insert(positions.end(), frame->cloud.position_m.begin(), frame->cloud.position_m.end());
+    }
+    return positions;
+  };
+  const std::vector<vec3> alone = all();
+  std::vector<std::future<std::vector<vec3>>> together;
+  for (int i = 0; i < 4; ++i) together.push_back(std::async(std::launch::async, all));
+  for (auto& found : together) EXPECT_TRUE(found.get() == alone);
 }
 
 TEST(InterpolatedFrame, IsRenderedOnlyWhereThatIsAskedFor) {
@@ -162,9 +205,8 @@ TEST(InterpolatedFrame, IsRenderedOnlyWhereThatIsAskedFor) {
   request.frames = {FrameIndex{1}};
   request.out = solved().folder() / "out";
   Progress progress;
-  EXPECT_THROW(renderChannels(project, request, device, progress), Error);
-  request.interpolate = true;
-  EXPECT_NO_THROW(renderChannels(project, request, device, progress));
+  EXPECT_THROW(renderChannels(*sequenceOf(project, Shows::Solved), request, device, progress), Error);
+  EXPECT_NO_THROW(renderChannels(*sequenceOf(project, Shows::Between), request, device, progress));
 }
 
 TEST(InterpolatedFrame, IsDrawnAsSuchAndReadAgainWithItsNeighbours) {

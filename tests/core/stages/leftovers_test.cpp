@@ -10,7 +10,9 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/pipeline/take_survey.h"
-#include "core/stages/interpolated_frame.h"
+#include "core/stages/project_sequence.h"
+#include "core/stages/result_files.h"
+#include "core/stages/step_ids.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
 namespace beam::testing {
@@ -22,10 +24,22 @@ std::vector<StageInfo> stages() {
   return {{"surface",
            "Surface",
            "",
-           {{.id = "fit", .title = "Fit", .reads = {Reads::Pictures}},
-            {.id = "refine", .title = "Refine", .inputs = {"surface.fit"}},
-            {.id = "mesh", .title = "Mesh", .inputs = {"surface.refine"}}}},
-          {"materials", "Materials", "", {{.id = "fit", .title = "Fit", .inputs = {"surface.refine"}}}}};
+           {{.id = "fit", .title = "Fit", .reads = {Reads::Pictures}, .shown = {.frame = true}},
+            {.id = "refine",
+             .title = "Refine",
+             .inputs = {kFitStep},
+             .shown = {.frame = true, .surface = kRefineStep}},
+            {.id = "mesh",
+             .title = "Mesh",
+             .inputs = {kRefineStep},
+             .shown = {.frame = true, .surface = kRefineStep}}}},
+          {"materials",
+           "Materials",
+           "",
+           {{.id = "fit",
+             .title = "Fit",
+             .inputs = {kRefineStep},
+             .shown = {.frame = true, .surface = kRefineStep, .last = true}}}}};
 }
 
 // One project of which every run writes clouds at `x_m = mark`, in order.
@@ -45,9 +59,12 @@ class Marked {
   }
   Project& project() { return *project_; }
   FakeHouse& house() { return house_; }
-  Leftovers leftovers() { return TakeSurveyor().survey(*project_).leftovers.at(0); }
-  std::optional<FrameResult> shown() { return loadShownFrame(*project_, FrameIndex{0}, leftovers()); }
-  std::optional<Mesh> mesh() { return loadShownMesh(*project_, FrameIndex{0}, leftovers()); }
+  std::shared_ptr<const GaussianFrame> shown() { return newest(*project_)->load(FrameIndex{0}); }
+  std::shared_ptr<const Mesh> mesh() { return newest(*project_)->mesh(FrameIndex{0}); }
+  static std::shared_ptr<const GaussianSequence> newest(const Project& project) {
+    return sequenceOf(project, Shows::Newest,
+                      std::make_shared<const TakeSurvey>(TakeSurveyor().survey(project)));
+  }
 
  private:
   void write(const std::string& step, StepContext& c) const {
@@ -82,7 +99,7 @@ class Marked {
   float mark_ = 0;
 };
 
-float markOf(const std::optional<FrameResult>& result) {
+float markOf(const std::shared_ptr<const GaussianFrame>& result) {
   return result && result->cloud.size() == 1 ? result->cloud.position_m[0].x : -1;
 }
 
@@ -108,8 +125,9 @@ TEST(Leftovers, MaterialsOfOtherSettingsStayOnTheSurfaceInForce) {
   EXPECT_THAT(shown->stale_note, HasSubstr("materials"));
   ASSERT_TRUE(marked.mesh());
   EXPECT_EQ(marked.mesh()->vertices[0].x, 1) << "of the surface in force";
-  EXPECT_EQ(markOf(loadShownFrame(marked.project(), FrameIndex{0})), 1) << "nothing of old to export";
-  EXPECT_FALSE(loadShownFrame(marked.project(), FrameIndex{0})->materials);
+  const auto exported = sequenceOf(marked.project(), Shows::Between)->load(FrameIndex{0});
+  EXPECT_EQ(markOf(exported), 1) << "nothing of old to export";
+  EXPECT_FALSE(exported->materials);
 }
 
 TEST(Leftovers, ASurfaceInForceComesBeforeMaterialsOfAnotherSurface) {
@@ -138,7 +156,7 @@ TEST(Leftovers, WithNothingInForceTheNewestMaterialsAreShownWithTheirMesh) {
   EXPECT_TRUE(shown->refined);
   ASSERT_TRUE(marked.mesh());
   EXPECT_EQ(marked.mesh()->vertices[0].x, 2);
-  EXPECT_FALSE(loadShownFrame(marked.project(), FrameIndex{0}));
+  EXPECT_FALSE(sequenceOf(marked.project(), Shows::Between)->load(FrameIndex{0}));
 }
 
 TEST(Leftovers, DamagedOnesArePassedOver) {
@@ -185,11 +203,13 @@ TEST(Leftovers, OfAProjectWithoutItsCaptureAreAllThereIs) {
   const TakeSurvey survey = TakeSurveyor().survey(lost);
   ASSERT_EQ(survey.frames, std::vector<std::string>{"000"});
   EXPECT_NE(survey.stamps[0], Digest{});
-  const auto shown = loadShownFrame(lost, FrameIndex{0}, survey.leftovers[0]);
+  const auto sequence = sequenceOf(lost, Shows::Newest, std::make_shared<const TakeSurvey>(survey));
+  EXPECT_TRUE(sequence->content(FrameIndex{0}).materials);
+  const auto shown = sequence->load(FrameIndex{0});
   EXPECT_EQ(markOf(shown), 1);
   EXPECT_TRUE(shown->stale);
   EXPECT_TRUE(shown->materials);
-  EXPECT_TRUE(loadShownMesh(lost, FrameIndex{0}, survey.leftovers[0]));
+  EXPECT_TRUE(sequence->mesh(FrameIndex{0}));
 }
 
 }  // namespace

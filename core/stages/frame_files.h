@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What published results hold of a frame, read back from their files.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "core/pipeline/result_store.h"
+#include "core/pipeline/take_survey.h"
+#include "core/scene/gaussian_sequence.h"
+
+namespace beam {
+
+// `folder`: a result of kMaterialsStep, kRefineStep or kFitStep.
+GaussianFrame readFrame(std::string_view step, const std::filesystem::path& folder);
+FrameJoints readJoints(const std::filesystem::path& folder);  // of kJointsStep
+
+// --- Results of settings that are no longer in force: to look at, never to score or to export. Those that
+// are damaged or of another version of the program are passed over. ---
+// The newest materials that lie on `surface`.
+std::optional<GaussianFrame> readOlderMaterials(const ResultStore& store, const Leftovers& leftovers,
+                                                const Digest& surface);
+// The newest with materials, else refined, else fitted.
+std::optional<GaussianFrame> readLeftover(const ResultStore& store, const Leftovers& leftovers);
+// The mesh of the surface that readLeftover shows.
+std::optional<Mesh> readLeftoverMesh(const ResultStore& store, const Leftovers& leftovers);
+
+}  // namespace beam
