@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -14,8 +15,10 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "core/base/rng.h"
 #include "tests/support/temp_dir.h"
 
 namespace beam::testing {
@@ -46,21 +49,27 @@ struct Said {
 class Running {
  public:
   // `max_file_bytes`: what a full disk looks like, from that size of a file on.
-  Running(const std::filesystem::path& scratch, const Words& words, rlim_t max_file_bytes = RLIM_INFINITY)
+  Running(const std::filesystem::path& scratch, const Words& words, rlim_t max_file_bytes = RLIM_INFINITY,
+          const char* program = BEAM_PROGRAM)
       : out_(scratch / "stdout"), err_(scratch / "stderr") {
     child_ = ::fork();
     if (child_ != 0) return;
     redirect(out_, STDOUT_FILENO);
     redirect(err_, STDERR_FILENO);
-    std::vector<char*> arguments = {const_cast<char*>(BEAM_PROGRAM)};
+    std::vector<char*> arguments = {const_cast<char*>(program)};
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     const rlimit limit{max_file_bytes, RLIM_INFINITY};
     ::setrlimit(RLIMIT_FSIZE, &limit);
-    ::execv(BEAM_PROGRAM, arguments.data());
+    ::execv(program, arguments.data());
     ::_exit(127);
   }
   void signal(int number) const { ::kill(child_, number); }
+  bool ended() const {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+           info.si_pid != 0;
+  }
   Said wait() const {
     int status = 0;
     ::waitpid(child_, &status, 0);
@@ -75,6 +84,58 @@ class Running {
   std::filesystem::path out_, err_;
   pid_t child_ = -1;
 };
+
+// Results that a project holds for good.
+inline int publishedIn(const std::filesystem::path& project) {
+  std::error_code none;
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(project / "results", none))
+    count += std::filesystem::exists(entry.path() / "result.json", none);
+  return count;
+}
+
+// What a command does when nothing disturbs it.
+struct CalmRun {
+  std::chrono::duration<double> took{};
+  int results = 0;
+};
+inline CalmRun runCalmly(const std::filesystem::path& scratch, const Words& words,
+                         const std::filesystem::path& project) {
+  const auto began = std::chrono::steady_clock::now();
+  const Said said = Running(scratch, words).wait();
+  if (said.code != 0) throw std::runtime_error("beam: " + said.err);
+  return {std::chrono::steady_clock::now() - began, publishedIn(project)};
+}
+
+// Kills runs of a command until `times` of them left work undone; returns how many did. Every other one, from
+// the first on, dies as soon as it published a result, the rest after a random part of the calm run's time.
+// One that was done first is none: the project begins anew, with shorter parts.
+inline int cutShort(const std::filesystem::path& scratch, const Words& words,
+                    const std::filesystem::path& project, CalmRun calm, int times) {
+  const RandomStream random(5);
+  int cut = 0;
+  for (int attempt = 0; cut < times && attempt < 20 * times; ++attempt) {
+    const int before = publishedIn(project);
+    const Running run(scratch, words);
+    if (cut % 2 == 0) {
+      while (!run.ended() && publishedIn(project) == before)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } else {
+      std::this_thread::sleep_for(0.5 * random.uniform(static_cast<std::uint64_t>(attempt)) * calm.took);
+    }
+    run.signal(SIGKILL);
+    const Said said = run.wait();
+    if (said.code != 0 && said.code != -SIGKILL)
+      throw std::runtime_error("beam ended before it was killed: " + said.err);
+    if (said.code == -SIGKILL && publishedIn(project) < calm.results) {
+      ++cut;
+      continue;
+    }
+    std::filesystem::remove_all(project);
+    calm.took /= 2;
+  }
+  return cut;
+}
 
 // A folder with the sample capture in it: 5 cameras of 48 x 64 pixels, two frames, made once for all tests.
 class SampleHouse {

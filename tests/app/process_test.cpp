@@ -5,7 +5,6 @@
 
 #include <thread>
 
-#include "core/base/rng.h"
 #include "tests/app/cli_support.h"
 
 namespace beam::testing {
@@ -84,19 +83,15 @@ TEST_F(Process, StopsAfterSurfaceWithoutAPanoramaAndSaysWhatItNeeds) {
 }
 
 TEST_F(Process, KilledAtAnyMomentItGoesOnAndEndsWithTheSameBytes) {
-  ASSERT_EQ(beam(process(SampleHouse::capture(), "calm.beam")).code, 0);
-  const auto calm = exported("calm.beam");
-  const RandomStream random(5);
-  for (int trial = 0; trial < 5; ++trial) {
-    const Running run(folder_.path(), process(SampleHouse::capture(), "p.beam"));
-    std::this_thread::sleep_for(
-        std::chrono::milliseconds(20 + random.below(static_cast<std::uint64_t>(trial), 400)));
-    run.signal(SIGKILL);
-    run.wait();
-  }
-  const Said said = beam(process(SampleHouse::capture(), "p.beam"));
+  const CalmRun calm =
+      runCalmly(folder_.path(), process(SampleHouse::capture(), "calm.beam"), at("calm.beam"));
+  const Words command = process(SampleHouse::capture(), "p.beam");
+  ASSERT_EQ(cutShort(folder_.path(), command, at("p.beam"), calm, 5), 5);
+  const Said said = beam(command);
   ASSERT_EQ(said.code, 0) << said.err;
-  EXPECT_TRUE(exported("p.beam") == calm);
+  EXPECT_THAT(said.err, HasSubstr(": reused")) << "the last kill found something published";
+  EXPECT_THAT(said.err, HasSubstr(": done")) << "but not all of it";
+  EXPECT_TRUE(exported("p.beam") == exported("calm.beam"));
 }
 
 TEST_F(Process, AStopSignalEndsItWith75AndTheSameCommandGoesOn) {
