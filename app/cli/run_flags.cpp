@@ -9,7 +9,7 @@
 #include "app/cli/console_reporter.h"
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
-#include "core/pipeline/frame_list.h"
+#include "core/scene/frame_list.h"
 
 namespace beam {
 namespace {

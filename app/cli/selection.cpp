@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/fields.h"
-#include "core/pipeline/frame_list.h"
+#include "core/scene/frame_list.h"
 
 namespace beam {
 

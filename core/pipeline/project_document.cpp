@@ -140,25 +140,6 @@ UpAxis parseUpAxis(std::string_view text) {
   throw Error(Error::Kind::Usage, fmt::format("up axis: expected +Y, +Z or -Y, found \"{}\"", text));
 }
 
-FileReference referenceTo(const fs::path& target, const fs::path& project) {
-  std::error_code failed;
-  const fs::path absolute = fs::weakly_canonical(fs::absolute(target), failed);
-  const fs::path base = fs::weakly_canonical(fs::absolute(project), failed);
-  return {absolute.lexically_relative(base).generic_string(), absolute.generic_string()};
-}
-
-std::optional<fs::path> resolve(const FileReference& reference, const fs::path& project) {
-  std::error_code failed;
-  if (!reference.relative.empty()) {
-    const fs::path base = fs::weakly_canonical(fs::absolute(project), failed);
-    const fs::path beside = (base / reference.relative).lexically_normal();
-    if (fs::exists(beside, failed)) return beside;
-  }
-  if (!reference.absolute.empty() && fs::exists(reference.absolute, failed))
-    return fs::path(reference.absolute);
-  return std::nullopt;
-}
-
 std::vector<DescriptionFile> describeCapture(const fs::path& capture) {
   std::vector<DescriptionFile> found;
   for (const char* folder : {"", "sparse", "sparse/0"}) {

@@ -13,22 +13,13 @@
 
 #include "core/base/error.h"
 #include "core/base/fields.h"
+#include "core/base/file_reference.h"
 #include "core/base/hash.h"
 #include "core/pipeline/file_lock.h"
 #include "core/pipeline/takes.h"
 #include "core/scene/capture.h"
 
 namespace beam {
-
-// A file or folder of the user: relative to the project folder when it can be, so that both may move
-// together.
-struct FileReference {
-  std::string relative, absolute;  // `relative` may be empty
-};
-FileReference referenceTo(const std::filesystem::path& target, const std::filesystem::path& project);
-// The first of the two that exists; empty when neither does.
-std::optional<std::filesystem::path> resolve(const FileReference& reference,
-                                             const std::filesystem::path& project);
 
 struct DescriptionFile {  // dataset.json and the like, to know the capture again
   std::string name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/frame_list.h"
+#include "core/scene/frame_list.h"
 
 #include <gtest/gtest.h>
 
