@@ -23,7 +23,7 @@ namespace beam {
 // A panorama around everything (scene/environment.h has its axes).
 struct EnvironmentLight {
   bool enabled = true;
-  FileReference file;       // empty: the light that the performance was captured in
+  FileReference file = {};  // empty: the light that the performance was captured in
   double rotation_deg = 0;  // about +Y, further than the panorama's own; positive moves it from +Z towards +X
   double gain = 1;          // times the panorama's own, >= 0
   bool background = false;  // it is what is seen behind the subject; false: the look's background is

@@ -29,7 +29,7 @@ void describe(Fields& f, Background& background);
 // How the camera moves.
 struct CameraPath {
   std::string kind = "none";  // it does not; or "turntable", or "file"
-  FileReference file;         // of "file"
+  FileReference file = {};    // of "file"
   std::string unknown = "{}";
 
   bool operator==(const CameraPath&) const = default;

@@ -55,6 +55,33 @@ T filled(T value, std::uint64_t seed) {
   return value;
 }
 
+// A value that the field may have and has not.
+inline FieldValue otherValue(const Field& field) {
+  FieldValue value = field.value;
+  if (bool* on = std::get_if<bool>(&value)) *on = !*on;
+  if (int* count = std::get_if<int>(&value)) *count += *count < field.info.max ? 1 : -1;
+  if (double* number = std::get_if<double>(&value))
+    *number = std::nextafter(*number, *number < field.info.max ? field.info.max : field.info.min);
+  if (std::string* word = std::get_if<std::string>(&value)) {
+    const auto& choices = field.info.choices;
+    const auto other =
+        std::find_if(choices.begin(), choices.end(), [&](const auto& c) { return c != *word; });
+    *word = other == choices.end() ? *word + "!" : *other;
+  }
+  return value;
+}
+
+// Calls check(name, changed) with the least change of each field that `value` describes, one at a time.
+template <class T, class Check>
+void changeEachField(const T& value, Check&& check) {
+  for (const Field& field : fieldsOf(value)) {
+    T changed = value;
+    FieldSetter setter(field.info.name, otherValue(field));
+    describe(setter, changed);
+    check(field.info.name, changed);
+  }
+}
+
 inline Curve randomCurve(const FieldInfo& info, bool is_switch, FillFields& random) {
   Curve curve;
   double time_s = random.number(-3, 0);
