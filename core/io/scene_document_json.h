@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes of several performances as JSON files: the fields by their paths, similarities as {"rotation" (three
+// rows), "scale", "translation_m"}, the look as in io/look_json.h. References are relative to the file's
+// folder where they can be. Members of a later version come back as they were.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/scene/scene_document.h"
+
+namespace beam {
+
+std::string toJson(const SceneDocument& document);
+// Throws Error{Data} that names `where`, the place in it, what was expected and found; also for a document
+// that is not valid or of a newer major format.
+SceneDocument parseSceneDocument(std::string_view json, std::string_view where);
+
+}  // namespace beam
