@@ -134,15 +134,15 @@ std::vector<LeftOutCamera> leftOutCameras(const Project& project) {
   return collectLeftOut(frames);
 }
 
-std::vector<Curve> curvesOf(const QualityHistory& history) {
-  std::map<std::string, Curve> curves;
+std::vector<ScoreCurve> curvesOf(const QualityHistory& history) {
+  std::map<std::string, ScoreCurve> curves;
   for (std::size_t f = 0; f < history.frames.size(); ++f) {
     for (const auto& [name, value] : history.frames[f].scores) {
       curves[name].name = name;
       curves[name].points.emplace_back(f, value);
     }
   }
-  std::vector<Curve> list;
+  std::vector<ScoreCurve> list;
   list.reserve(curves.size());
   for (auto& [name, curve] : curves) list.push_back(std::move(curve));
   return list;

@@ -38,11 +38,11 @@ QualityHistory qualityHistory(const Project& project);
 std::vector<LeftOutCamera> leftOutCameras(const Project& project);
 
 // Scores of several frames, by name, in order of frames.
-struct Curve {
+struct ScoreCurve {
   std::string name;
   std::vector<std::pair<std::size_t, double>> points;  // index in history.frames, value
 };
-std::vector<Curve> curvesOf(const QualityHistory& history);
+std::vector<ScoreCurve> curvesOf(const QualityHistory& history);
 // Whether more is better (psnr, ssim); nothing is said of counts.
 enum class Better { More, Less, Neither };
 Better betterOf(const std::string& score);

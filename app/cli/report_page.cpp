@@ -347,7 +347,7 @@ class PageWriter {
   // Every other score of every step and of the evaluation: energies, flicker, losses, counts.
   void otherCurves() {
     std::string charts;
-    for (const Curve& curve : curvesOf(h_)) {
+    for (const ScoreCurve& curve : curvesOf(h_)) {
       if (curve.name.starts_with("surface.score.")) continue;
       Chart c = chart(curve.name, "");
       c.width = 340, c.height = 160;

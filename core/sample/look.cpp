@@ -33,7 +33,7 @@ float stripe(float x, float period, float share) {
   return glm::smoothstep(0.0f, edge, t) * (1 - glm::smoothstep(share, share + edge, t));
 }
 
-Look shirt(vec3 r) {
+FigureLook shirt(vec3 r) {
   const float u = std::atan2(r.x, -r.y) * 0.16f + 0.35f * r.x, v = r.z;
   const float wide = 0.5f * (stripe(u, 0.058f, 0.45f) + stripe(v, 0.058f, 0.45f));
   const float thin = std::max(stripe(u + 0.012f, 0.058f, 0.07f), stripe(v + 0.012f, 0.058f, 0.07f));
@@ -42,7 +42,7 @@ Look shirt(vec3 r) {
   return {c * (0.88f + 0.24f * noise(r * 160.0f)), 0.85f};
 }
 
-Look jeans(vec3 r) {
+FigureLook jeans(vec3 r) {
   const float worn = glm::smoothstep(0.45f, 0.75f, noise(r * vec3(16, 16, 7))), weave = noise(r * 260.0f);
   const float seam = stripe(r.y + 0.004f, 10.0f, 0.0008f);
   vec3 c = glm::mix(vec3(0.045f, 0.085f, 0.21f), vec3(0.19f, 0.27f, 0.45f), worn);
@@ -50,7 +50,7 @@ Look jeans(vec3 r) {
   return {c * (0.85f + 0.3f * weave), 0.8f};
 }
 
-Look skin(vec3 r) {
+FigureLook skin(vec3 r) {
   const float flush = glm::smoothstep(1.56f, 1.60f, r.z) * (1 - glm::smoothstep(1.61f, 1.65f, r.z));
   vec3 c = glm::mix(vec3(0.46f, 0.25f, 0.165f), vec3(0.52f, 0.23f, 0.16f), 0.5f * flush);
   if (r.z > 1.655f && r.z < 1.666f && r.y < -0.05f && std::abs(std::abs(r.x) - 0.033f) < 0.02f)
@@ -58,7 +58,7 @@ Look skin(vec3 r) {
   return {c * (0.97f + 0.06f * noise(r * 40.0f)), 0.45f};
 }
 
-Look eye(vec3 r) {
+FigureLook eye(vec3 r) {
   const vec2 d(std::abs(r.x) - 0.033f, r.z - 1.642f);
   const float radius = glm::length(d);
   if (radius < 0.0028f) return {vec3(0.01f), 0.2f};
@@ -91,7 +91,7 @@ Environment lit(vec3 sky, vec3 horizon, vec3 floor, const std::vector<Lamp>& lam
 
 }  // namespace
 
-Look lookOf(const SurfacePoint& p) {
+FigureLook lookOf(const SurfacePoint& p) {
   const vec3 r = p.rest;
   switch (p.cloth) {
     case Cloth::Shirt:

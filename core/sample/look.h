@@ -9,11 +9,11 @@
 
 namespace beam {
 
-struct Look {
+struct FigureLook {
   vec3 base_color{0};  // linear
   float roughness = 0.5f;
 };
-Look lookOf(const SurfacePoint& point);
+FigureLook lookOf(const SurfacePoint& point);
 
 // Softboxes of different tint in a grey dome over a darker floor.
 Environment domeLight();

@@ -25,7 +25,7 @@ constexpr double kNear_m = 0.05;
 struct Hit {
   vec3 position, normal;  // shading normal
   float depth = 0;        // along the ray
-  Look look;
+  FigureLook look;
 };
 
 // Uniform numbers of one path, a dimension each call.
@@ -115,7 +115,7 @@ struct SampleScene::State {
   }
 
   // The look belongs to the body: of the same point in the figure's pose.
-  Look lookAt(unsigned triangle, float u, float v) const {
+  FigureLook lookAt(unsigned triangle, float u, float v) const {
     const auto& t = triangles[triangle];
     const vec3 x = (1 - u - v) * first[t[0]] + u * first[t[1]] + v * first[t[2]];
     return lookOf(
