@@ -117,6 +117,18 @@ FileReference moved(const FileReference& reference, const fs::path& from, const 
   return referenceTo(found ? *found : fs::path(reference.absolute), to);
 }
 
+void moveReferences(ProjectDocument& document, const fs::path& from, const fs::path& to) {
+  const auto move = [&](FileReference& reference) {
+    if (!reference.empty()) reference = moved(reference, from, to);
+  };
+  if (!document.capture.absolute.empty()) move(document.capture);
+  if (document.environment) move(*document.environment);
+  for (Look& look : document.looks) {
+    move(look.lighting.environment.file);
+    move(look.camera_path.file);
+  }
+}
+
 void copyChecked(const Project& from, const fs::path& source, const fs::path& to, bool with_results,
                  Progress& progress) {
   checkTarget(source, to);
@@ -139,8 +151,7 @@ void copyChecked(const Project& from, const fs::path& source, const fs::path& to
   progress.check();
   ProjectDocument document = from.document();
   document.id = newProjectId();
-  if (!document.capture.absolute.empty()) document.capture = moved(document.capture, source, to);
-  if (document.environment) document.environment = moved(*document.environment, source, to);
+  moveReferences(document, source, to);
   writeProjectDocument(half, document);
   syncPath(half);
   fs::rename(half, to);  // takes the place of an empty folder

@@ -208,6 +208,38 @@ void Project::setUp(std::optional<UpAxis> up) {
   forgetCapture();
 }
 
+const Look* Project::look(std::string_view name) const {
+  const auto found = std::find_if(document_.looks.begin(), document_.looks.end(),
+                                  [&](const Look& look) { return look.name == name; });
+  return found == document_.looks.end() ? nullptr : &*found;
+}
+
+void Project::setLook(const Look& look) {
+  if (!isLookName(look.name)) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" cannot name a look: expected 1 to 100 characters without / and \\, not "
+                            "beginning with a dot",
+                            look.name));
+  }
+  validate(look);
+  const auto same = std::find_if(document_.looks.begin(), document_.looks.end(),
+                                 [&](const Look& l) { return l.name == look.name; });
+  if (same != document_.looks.end()) {
+    *same = look;
+    return;
+  }
+  if (document_.looks.size() >= kMostLooks) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" has {} looks, which is as many as there can be: remove one first",
+                            folder_.string(), kMostLooks));
+  }
+  document_.looks.push_back(look);
+}
+
+void Project::removeLook(std::string_view name) {
+  std::erase_if(document_.looks, [&](const Look& look) { return look.name == name; });
+}
+
 void Project::forgetCapture() {
   imported_.reset();
   memo_.clear();

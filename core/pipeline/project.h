@@ -71,6 +71,14 @@ class Project {
   void setEnvironment(const std::optional<std::filesystem::path>& file);
   void setHoldOut(std::vector<std::string> hold_out);
   void setUp(std::optional<UpAxis> up);
+  // Looks, in the order they came in: they enter no key and change no state. Null: there is none of that
+  // name.
+  const std::vector<Look>& looks() const { return document_.looks; }
+  const Look* look(std::string_view name) const;
+  // Adds it, or puts it in place of the one of its name. Throws Error{Data} for a look that is not valid,
+  // Error{Usage} for a name that is none (isLookName) and for more than kMostLooks.
+  void setLook(const Look& look);
+  void removeLook(std::string_view name);  // nothing when there is none
   // Writes project.json when it differs from what is on disk; nothing else ever does. Throws Error{Locked} or
   // Error{Storage}.
   void save();

@@ -16,6 +16,7 @@
 #include "core/base/fields_json.h"
 #include "core/base/json_words.h"
 #include "core/io/file.h"
+#include "core/io/look_json.h"
 #include "core/pipeline/file_digest.h"
 #include "core/pipeline/file_lock.h"
 
@@ -69,28 +70,35 @@ fs::path nextHistoryFile(const fs::path& history) {
   return history / fmt::format("{:08}.json", last + 1);
 }
 
-// Whether the file says the same; afterwards `document` has its takes. A damaged file is to be replaced.
-bool sameOnDisk(const fs::path& file, ProjectDocument& document) {
+struct OnDisk {
+  std::string text;
+  ProjectDocument document;
+};
+
+// None: there is no file, or a damaged one, which is to be replaced.
+std::optional<OnDisk> onDisk(const fs::path& file) {
   std::error_code failed;
-  if (!fs::is_regular_file(file, failed)) return false;
-  const std::string text = readTextFile(file);
+  if (!fs::is_regular_file(file, failed)) return std::nullopt;
+  std::string text = readTextFile(file);
   try {
-    document.takes = parseProjectDocument(text, file.string()).takes;
+    ProjectDocument document = parseProjectDocument(text, file.string());
+    return OnDisk{std::move(text), std::move(document)};
   } catch (const Error&) {
-    return false;
+    return std::nullopt;
   }
-  return text == toJson(document);
 }
 
-void writeLocked(const fs::path& project, const ProjectDocument& document) {
-  const std::string text = toJson(document);
+bool sameButForLooks(const ProjectDocument& a, const ProjectDocument& b) {
+  return toJson(withoutLooks(a)) == toJson(withoutLooks(b));
+}
+
+void keepInHistory(const fs::path& project, const std::string& text) {
   try {
     fs::create_directories(project / "history");
     writeFileAtomically(nextHistoryFile(project / "history"), text);
   } catch (const fs::filesystem_error& e) {
     throw Error(Error::Kind::Storage, e.what());
   }
-  writeFileAtomically(project / "project.json", text);
 }
 
 ProjectDocument documentOf(Json j) {
@@ -104,8 +112,9 @@ ProjectDocument documentOf(Json j) {
   for (const auto& [key, value] : j.at("settings").items())
     document.settings[key] = parseFieldValue(value.dump());
   if (j.contains("takes")) readTakes(j["takes"], document);
+  if (j.contains("looks")) document.looks = parseLooks(j["looks"].dump());
   for (const char* known :
-       {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings", "takes"}) {
+       {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings", "takes", "looks"}) {
     j.erase(known);
   }
   document.unknown = j.dump();
@@ -113,6 +122,11 @@ ProjectDocument documentOf(Json j) {
 }
 
 }  // namespace
+
+ProjectDocument withoutLooks(ProjectDocument document) {
+  document.looks.clear();
+  return document;
+}
 
 std::string newProjectId() {
   std::random_device device;
@@ -201,6 +215,7 @@ std::string toJson(const ProjectDocument& document) {
     if (take.lead > 0) saved["lead"] = take.lead;
     j["takes"].push_back(std::move(saved));
   }
+  if (!document.looks.empty()) j["looks"] = Json::parse(looksToJson(document.looks));
   const Json unknown = Json::parse(document.unknown);
   for (const auto& [key, value] : unknown.items()) j[key] = value;
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -229,13 +244,21 @@ ProjectDocument parseProjectDocument(std::string_view json, std::string_view whe
 }
 
 bool isSaved(const fs::path& project, const ProjectDocument& document) {
+  const std::optional<OnDisk> disk = onDisk(project / "project.json");
+  if (!disk) return false;
   ProjectDocument here = document;
-  return sameOnDisk(project / "project.json", here);
+  here.takes = disk->document.takes;
+  return disk->text == toJson(here);
 }
 
 void writeProjectDocument(const fs::path& project, ProjectDocument& document) {
   const FileLock lock = lockProject(project);
-  if (!sameOnDisk(project / "project.json", document)) writeLocked(project, document);
+  const std::optional<OnDisk> disk = onDisk(project / "project.json");
+  if (disk) document.takes = disk->document.takes;
+  const std::string text = toJson(document);
+  if (disk && disk->text == text) return;
+  if (!disk || !sameButForLooks(disk->document, document)) keepInHistory(project, text);
+  writeFileAtomically(project / "project.json", text);
 }
 
 std::vector<SavedTake> changeSavedTakes(const fs::path& project, const ChangeTakes& change) {

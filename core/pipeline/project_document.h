@@ -18,6 +18,7 @@
 #include "core/pipeline/file_lock.h"
 #include "core/pipeline/takes.h"
 #include "core/scene/capture.h"
+#include "core/scene/look.h"
 
 namespace beam {
 
@@ -42,6 +43,7 @@ struct ProjectDocument {
   std::string preset = "standard";
   std::map<std::string, FieldValue> settings;  // what differs from the preset
   std::vector<SavedTake> takes;                // later ones win
+  std::vector<Look> looks;                     // names differ; in no key
   std::string unknown = "{}";                  // members of a later version, kept as they are (JSON)
 };
 
@@ -59,6 +61,9 @@ std::string toJson(const ProjectDocument& document);
 // program is needed.
 ProjectDocument parseProjectDocument(std::string_view json, std::string_view where);
 
+// For what looks have no part in: keys, states, history.
+ProjectDocument withoutLooks(ProjectDocument document);
+
 std::string newProjectId();
 
 // For the moment of a change of project.json. Throws Error{Locked} that names the holder when it stays taken.
@@ -67,8 +72,9 @@ FileLock lockProject(const std::filesystem::path& project);
 // Whether project.json says what `document` says, takes apart.
 bool isSaved(const std::filesystem::path& project, const ProjectDocument& document);
 // Makes project.json of the folder say what `document` says, with a copy in history/, which keeps the last
-// twenty. Takes are another matter: processes change them while others work, so those on disk hold and go
-// into `document`. Takes LOCK for the moment: Error{Locked} names its holder when it stays taken.
+// twenty; none where looks are all that differs, for they change with every touch of a light. Takes are
+// another matter: processes change them while others work, so those on disk hold and go into `document`.
+// Takes LOCK for the moment: Error{Locked} names its holder when it stays taken.
 void writeProjectDocument(const std::filesystem::path& project, ProjectDocument& document);
 // Changes the takes in project.json and nothing else of it, whatever another process wrote there meanwhile;
 // gives them as they are now. Writes only when they differ. Throws like writeProjectDocument.

@@ -252,7 +252,7 @@ void TakeSurveyor::surveyStages(Pass& pass, TakeSurvey& survey) {
 
 TakeSurvey TakeSurveyor::survey(const Project& project) {
   const std::string now = fmt::format("{}\n{}\n{}", project.folder().string(), project.withoutCapture(),
-                                      toJson(project.document()));
+                                      toJson(withoutLooks(project.document())));
   if (now != known_for_) {
     keys_.clear();
     leads_.clear();

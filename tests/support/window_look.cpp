@@ -64,7 +64,7 @@ QString rowsOf(const QAbstractItemView& view) {
 }
 
 // What it says; and under "value" what is chosen in it.
-void tell(Look& look, const QString& path, const QWidget& w) {
+void tell(WindowLook& look, const QString& path, const QWidget& w) {
   const auto put = [&](const char* property, const QString& value) { look[path + "|" + property] = value; };
   if (const auto* elided = qobject_cast<const ElidedLabel*>(&w)) {
     put("text", elided->text());
@@ -117,8 +117,8 @@ std::map<QString, QWidget*> widgetsByPath(const QWidget& window) {
   return found;
 }
 
-Look lookAt(const QWidget& window) {
-  Look look;
+WindowLook lookAt(const QWidget& window) {
+  WindowLook look;
   look["window|title"] = window.windowTitle();
   look["window|state"] = QString::number(static_cast<int>(window.windowState()));
   look["window|shown"] = window.isVisible() ? "yes" : "no";
@@ -137,7 +137,7 @@ Look lookAt(const QWidget& window) {
   return look;
 }
 
-std::set<QString> differences(const Look& a, const Look& b) {
+std::set<QString> differences(const WindowLook& a, const WindowLook& b) {
   std::set<QString> keys;
   for (const auto& [key, value] : a) {
     const auto other = b.find(key);

@@ -17,10 +17,10 @@ QString pathOf(const QWidget& widget);
 std::map<QString, QWidget*> widgetsByPath(const QWidget& window);
 
 // "path|property" to value.
-using Look = std::map<QString, QString>;
-Look lookAt(const QWidget& window);
+using WindowLook = std::map<QString, QString>;
+WindowLook lookAt(const QWidget& window);
 // Keys that are in one alone or tell different things.
-std::set<QString> differences(const Look& a, const Look& b);
+std::set<QString> differences(const WindowLook& a, const WindowLook& b);
 
 // The words that a person reads who rests the mouse there: the widget's own, else those of what it lies in.
 QString tipOf(const QWidget& widget);

@@ -67,7 +67,7 @@ class Bench {
   Room tabsInFront();
   Room roomOf(const QString& tab);
   bool hasPicture();
-  std::set<QString> changes(const Look& before, const Control& control);
+  std::set<QString> changes(const WindowLook& before, const Control& control);
   bool pressAndRead(const Control& control);
   bool pressAndCompare(const Control& control);
 
@@ -114,7 +114,7 @@ void Bench::make() {
 // What changes by itself in this state; the paths are the same in the next window.
 void Bench::watch() {
   watched_ = true;
-  const Look look = lookAt(*window_);
+  const WindowLook look = lookAt(*window_);
   QTest::qWait(500);
   restless_ = differences(look, lookAt(*window_));
 }
@@ -258,7 +258,7 @@ std::vector<Control> Bench::controls() {
 // Where there is something to see, the choice alone is no answer.
 bool Bench::hasPicture() { return window_->model().isOpen() && window_->model().values().cloud; }
 
-std::set<QString> Bench::changes(const Look& before, const Control& control) {
+std::set<QString> Bench::changes(const WindowLook& before, const Control& control) {
   std::set<QString> keys;
   for (const QString& key : differences(before, lookAt(*window_))) {
     if (!restless_.contains(key) && !(isOwnValue(control, key) && hasPicture())) keys.insert(key);
@@ -267,7 +267,7 @@ std::set<QString> Bench::changes(const Look& before, const Control& control) {
 }
 
 bool Bench::pressAndRead(const Control& control) {
-  const Look before = lookAt(*window_);
+  const WindowLook before = lookAt(*window_);
   bool fired = false;
   QObject guard;  // of these connections
   for (const QAction* action : window_->findChildren<QAction*>())

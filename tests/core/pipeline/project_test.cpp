@@ -102,7 +102,7 @@ TEST(ProjectFolder, MembersOfALaterVersionSurviveASave) {
   house.newProject();
   const auto file = house.root() / "p.beam" / "project.json";
   std::string text = readTextFile(file);
-  text.insert(text.find("\"preset\""), "\"looks\": {\"studio\": [1, 2]},\n  ");
+  text.insert(text.find("\"preset\""), "\"rooms\": {\"studio\": [1, 2]},\n  ");
   std::ofstream(file) << text;
   Project p = house.open();
   p.set("surface.iterations", 77);
