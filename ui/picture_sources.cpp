@@ -114,7 +114,8 @@ Picture renderedOf(const Render& r, Channel channel) {
   }
   GBufferRenderer renderer(*r.device);
   const Camera& camera = r.shot.capture->views[r.shot.view.value].camera;
-  const GBuffer g = renderer.render(*r.values.cloud, r.values.materials.get(), camera);
+  const GBuffer g =
+      renderer.render(*residentOf(*r.device, *r.values.cloud, r.values.materials.get()), camera);
   Image<vec3> lit;
   if (channel == Channel::Lit) lit = shade(g, camera, *r.light.light, {.yaw_rad = r.light.yaw_rad});
   // A figure of a difference says nothing unless the light is that of the photograph.

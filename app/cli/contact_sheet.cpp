@@ -32,12 +32,12 @@ vec3 encoded(vec3 v) {
           srgbFromLinear(std::clamp(v.z, 0.0f, 1.0f))};
 }
 
-void fill(const TrainingView& view, const GaussianFrame& result, GBufferRenderer& renderer, ContactRow& row) {
+void fill(const TrainingView& view, const ResidentScene& scene, bool materials, GBufferRenderer& renderer,
+          ContactRow& row) {
   const int w = view.photo.width, h = view.photo.height;
   Planes target;
   compose(view, vec3(0), target);
-  const GBuffer g =
-      renderer.render(result.cloud, result.materials ? &*result.materials : nullptr, view.camera);
+  const GBuffer g = renderer.render(scene, view.camera);
   const auto photo = [&](std::size_t i) {
     return vec3(target.plane(0)[i], target.plane(1)[i], target.plane(2)[i]);
   };
@@ -47,7 +47,7 @@ void fill(const TrainingView& view, const GaussianFrame& result, GBufferRenderer
   add("difference × 4", [&](std::size_t i) {
     return kDifferenceGain * glm::abs(glm::clamp(g.radiance.pixels[i], 0.0f, 1.0f) - photo(i));
   });
-  if (result.materials) {
+  if (materials) {
     add("base colour", [&](std::size_t i) { return encoded(g.base_color.pixels[i]); });
     add("ambient occlusion", [&](std::size_t i) { return vec3(g.ambient_occlusion.pixels[i]); });
   }
@@ -91,9 +91,10 @@ std::vector<ContactRow> contactSheet(const GaussianSequence& sequence, const Cap
       views.reserve(chosen.size());
       for (const auto& [view, held_out] : chosen) views.push_back(view);
       const std::vector<TrainingView> crops = cropToMasks(views);
+      const auto resident = residentOf(device, *result);
       for (std::size_t i = 0; i < crops.size(); ++i) {
         rows.push_back({nameOf(sequence, frame), views[i].name, chosen[i].second, {}});
-        fill(crops[i], *result, renderer, rows.back());
+        fill(crops[i], *resident, result->materials.has_value(), renderer, rows.back());
       }
     }
     progress.step();

@@ -57,7 +57,7 @@ class MotionScorer {
  public:
   MotionScorer(const GaussianSequence& sequence, const std::vector<View>& views, const GroundTruth* truth,
                ComputeDevice& device, PictureScores& each)
-      : sequence_(sequence), truth_(truth), renderer_(device), each_(each) {
+      : sequence_(sequence), truth_(truth), device_(device), renderer_(device), each_(each) {
     if (!truth) return;
     for (const View& view : views) {
       const auto& tests = truth->test_cameras;
@@ -85,10 +85,9 @@ class MotionScorer {
     m.skin = readTracks(truth_->folder / "gt/tracks" / (name(index) + ".ply"),
                         inverse(sequence_.captureFromWorld()));
     if (!m.skin) return m;
-    for (const Camera& camera : cameras_) {
-      const Materials* materials = m.result->materials ? &*m.result->materials : nullptr;
-      m.views.push_back(seenPoints(renderer_.render(m.result->cloud, materials, camera), camera, *m.skin));
-    }
+    const auto resident = residentOf(device_, *m.result);
+    for (const Camera& camera : cameras_)
+      m.views.push_back(seenPoints(renderer_.render(*resident, camera), camera, *m.skin));
     return m;
   }
 
@@ -141,6 +140,7 @@ class MotionScorer {
 
   const GaussianSequence& sequence_;
   const GroundTruth* truth_;
+  ComputeDevice& device_;
   GBufferRenderer renderer_;
   PictureScores& each_;
   std::vector<Camera> cameras_;

@@ -200,10 +200,11 @@ void bakeMaterials(std::span<const FrameView> views, const GaussianCloud& cloud,
   const EnvironmentSampler light(environment);
   const auto tracer = device.newTracer({.threshold = static_cast<float>(options.threshold)}, cloud);
   GBufferRenderer renderer(device);
+  const auto resident = residentOf(device, cloud, nullptr);
   LitPixels lit;
   for (std::size_t v = 0; v < views.size(); ++v) {
     Progress part = progress.part(1.0 / static_cast<double>(views.size()), "tracing " + views[v].name);
-    const GBuffer g = renderer.render(cloud, nullptr, views[v].camera);
+    const GBuffer g = renderer.render(*resident, views[v].camera);
     const std::vector<SurfacePoint> points = surfacePoints(g, views[v].camera, views[v].mask);
     part.expect(static_cast<std::int64_t>(points.size()));
     const auto integrals = integrateLight(points, samplingOf(options, v), light, *tracer, part);

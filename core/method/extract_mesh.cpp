@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/method/tsdf.h"
+#include "core/render/rasterizer_cache.h"
 
 namespace beam {
 namespace {
@@ -60,13 +61,11 @@ Mesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> cameras,
   depth.expect(static_cast<std::int64_t>(cameras.size()), "cameras");
   const GaussianBuffers buffers = toBuffers(cloud);
   std::vector<DepthView> views;
-  std::unique_ptr<Rasterizer> raster;
+  RasterizerCache rasterizers(device);
   for (const Camera& c : cameras) {
-    if (!raster || raster->desc().width != c.width || raster->desc().height != c.height) {
-      raster = device.newRasterizer({.width = c.width, .height = c.height, .color = false, .geometry = true});
-    }
     RasterImages images;
-    raster->forward(buffers, c, 0, vec3(0), images);
+    rasterizers.of({.width = c.width, .height = c.height, .color = false, .geometry = true})
+        .forward(buffers, c, 0, vec3(0), images);
     views.push_back(depthView(images, c));
     depth.step();
   }

@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
 #include "core/math/color.h"
+#include "core/render/rasterizer_cache.h"
 
 namespace beam {
 namespace {
@@ -106,21 +107,18 @@ ShBlock fitDescent(std::span<const MaterialMaps> maps, const GaussianCloud& clou
   }
   const auto ops = device.newTrainingOps();
   Loss loss(options.kind, *ops);
-  std::unique_ptr<Rasterizer> rasterizer;
+  RasterizerCache rasterizers(device);
   RasterImages images, upstream;
   const RandomStream choice(1, 0x666974, static_cast<int>(options.kind));
   progress.expect(options.iterations, "iterations");
   for (int step = 1; step <= options.iterations; ++step) {
     progress.step();
     const MaterialMaps& m = maps[choice.below(step, maps.size())];
-    if (!rasterizer || rasterizer->desc().width != m.camera.width ||
-        rasterizer->desc().height != m.camera.height) {
-      rasterizer =
-          device.newRasterizer({.width = m.camera.width, .height = m.camera.height, .gradients = true});
-    }
-    rasterizer->forward(values, m.camera, 3, vec3(0), images);
+    Rasterizer& rasterizer =
+        rasterizers.of({.width = m.camera.width, .height = m.camera.height, .gradients = true});
+    rasterizer.forward(values, m.camera, 3, vec3(0), images);
     upstream.color = loss.gradient(images, m);
-    rasterizer->backward(upstream, gradients);
+    rasterizer.backward(upstream, gradients);
     addRegularization(values, static_cast<float>(options.regularization), gradients);
     addTemporal(values, start, static_cast<float>(options.temporal_weight), gradients);
     ops->adam(values, gradients, first, second, rates, {}, step);

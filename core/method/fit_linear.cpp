@@ -10,6 +10,7 @@
 #include "core/math/color.h"
 #include "core/math/knn.h"
 #include "core/math/sh.h"
+#include "core/render/rasterizer_cache.h"
 
 namespace beam {
 namespace {
@@ -119,19 +120,16 @@ std::vector<ViewEquations> collect(const MapSource& maps, const GaussianCloud& c
                                    std::size_t most_entries, ComputeDevice& device, Progress& progress) {
   const GaussianBuffers buffers = toBuffers(cloud);
   const std::size_t pixels = pixelsAskedFor(maps, progress);
-  std::unique_ptr<Rasterizer> rasterizer;
+  RasterizerCache rasterizers(device);
   std::vector<ViewEquations> views;
   int stride = 0;  // not known before a view has shown something
   progress.expect(static_cast<std::int64_t>(maps.views), "photographs");
   for (std::size_t v = 0; v < maps.views; ++v) {
     progress.step();
     const MaterialMaps m = maps.read(v);
-    if (!rasterizer || rasterizer->desc().width != m.camera.width ||
-        rasterizer->desc().height != m.camera.height) {
-      rasterizer = device.newRasterizer(
-          {.width = m.camera.width, .height = m.camera.height, .color = false, .geometry = true});
-    }
-    const BlendWeights blend = rasterizer->blendWeights(buffers, m.camera);
+    Rasterizer& rasterizer = rasterizers.of(
+        {.width = m.camera.width, .height = m.camera.height, .color = false, .geometry = true});
+    const BlendWeights blend = rasterizer.blendWeights(buffers, m.camera);
     ViewEquations e = equationsOf(m, blend, std::max(1, stride));
     if (stride == 0 && e.rows() > 0) {
       stride = strideFor(e, pixels, most_entries);

@@ -108,13 +108,14 @@ std::vector<ViewScore> scoreViews(std::span<const FrameView> views, bool held_ou
   progress.expect(static_cast<std::int64_t>(views.size()), "photographs");
   const std::vector<TrainingView> crops = cropToMasks(views);
   GBufferRenderer renderer(device);
+  const auto resident = residentOf(device, cloud, nullptr);
   std::vector<ViewScore> scores(crops.size());
   std::vector<Planes> photos(std::min(kTogether, crops.size())), renders(photos.size());
   for (std::size_t first = 0; first < crops.size(); first += kTogether) {
     const std::size_t count = std::min(kTogether, crops.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       compose(crops[first + i], vec3(0), photos[i]);
-      renders[i] = planesOf(renderer.render(cloud, nullptr, crops[first + i].camera).radiance);
+      renders[i] = planesOf(renderer.render(*resident, crops[first + i].camera).radiance);
       progress.step();
     }
     parallelFor(count, 1, [&](std::size_t i, std::size_t) {

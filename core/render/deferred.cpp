@@ -7,7 +7,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
-#include "core/math/sh.h"
 #include "core/render/prepared_light.h"
 
 namespace beam {
@@ -18,30 +17,6 @@ constexpr float kDiffuseShare =
     0.955f;                          // k_d: what (1 - F) leaves, averaged over the hemisphere (methods 7.2)
 constexpr float kDegenerate = 0.1f;  // |sum w n| below this share of alpha is no normal (methods 7.1)
 enum Extra { kBaseColor = 0, kOcclusion = 3, kRoughness = 4, kExtraCount = 5 };
-
-// Base colour, AO and roughness of every Gaussian as the camera sees it, into the extra planes.
-void evaluateMaterials(const Materials& m, const Camera& camera, const GaussianCloud& cloud,
-                       GaussianBuffers& buffers) {
-  const vec3 eye(centerOf(camera));
-  float* planes[kExtraCount];
-  for (int c = 0; c < kExtraCount; ++c) planes[c] = buffers.plane(PlaneLayout::kExtra + c);
-  parallelFor(cloud.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const vec3 to = cloud.position_m[i] - eye;
-      const auto basis = shBasis(to / std::max(glm::length(to), 1e-6f));
-      const float* color = m.base_color.of(i);
-      const float* occlusion = m.ambient_occlusion.of(i);
-      float value[4] = {0.5f, 0.5f, 0.5f, 0.5f};
-      for (int k = 0; k < kShCount; ++k) {
-        for (int c = 0; c < 3; ++c) value[c] += basis[k] * color[k * 3 + c];
-        value[3] += basis[k] * occlusion[k];
-      }
-      for (int c = 0; c < 3; ++c) planes[kBaseColor + c][i] = value[c];
-      planes[kOcclusion][i] = value[3];
-      planes[kRoughness][i] = m.roughness[i];
-    }
-  });
-}
 
 vec3 triple(const Planes& p, std::size_t i) { return {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]}; }
 
@@ -89,37 +64,20 @@ vec3 radiance(const Surface& s, const PreparedLight& light, const ShadeOptions& 
 
 }  // namespace
 
-struct GBufferRenderer::State {
-  ComputeDevice& device;
-  std::unique_ptr<Rasterizer> rasterizer;
-  RasterImages images;
+GBufferRenderer::GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes)
+    : rasterizers_(device, kept_sizes) {}
 
-  Rasterizer& fitting(const Camera& camera, int extra_channels) {
-    const bool fits = rasterizer && rasterizer->desc().width == camera.width &&
-                      rasterizer->desc().height == camera.height &&
-                      rasterizer->desc().extra_channels == extra_channels;
-    if (!fits) {
-      rasterizer = device.newRasterizer({.width = camera.width,
-                                         .height = camera.height,
-                                         .color = true,
-                                         .geometry = true,
-                                         .extra_channels = extra_channels});
-    }
-    return *rasterizer;
-  }
-};
-
-GBufferRenderer::GBufferRenderer(ComputeDevice& device) : state_(new State{device, nullptr, {}}) {}
-GBufferRenderer::~GBufferRenderer() = default;
-
-GBuffer GBufferRenderer::render(const GaussianCloud& cloud, const Materials* materials,
-                                const Camera& camera) {
-  const int extra = materials ? kExtraCount : 0;
-  Rasterizer& rasterizer = state_->fitting(camera, extra);
-  GaussianBuffers buffers = toBuffers(cloud, extra);
-  if (materials) evaluateMaterials(*materials, camera, cloud, buffers);
-  RasterImages& images = state_->images;
-  rasterizer.forward(buffers, camera, 3, vec3(0), images);
+GBuffer GBufferRenderer::render(const ResidentScene& scene, const Camera& camera) {
+  static const std::vector<std::string> kMaterialNames = {kBaseColorName, kOcclusionName, kRoughnessName};
+  const bool materials = std::all_of(kMaterialNames.begin(), kMaterialNames.end(),
+                                     [&](const std::string& name) { return scene.has(name); });
+  Rasterizer& rasterizer = rasterizers_.of({.width = camera.width,
+                                            .height = camera.height,
+                                            .color = true,
+                                            .geometry = true,
+                                            .extra_channels = materials ? kExtraCount : 0});
+  RasterImages& images = images_;
+  rasterizer.forward(scene, materials ? kMaterialNames : std::vector<std::string>(), camera, vec3(0), images);
 
   const int w = camera.width, h = camera.height;
   GBuffer g;

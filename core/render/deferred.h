@@ -7,23 +7,23 @@
 #include <memory>
 
 #include "core/render/device.h"
+#include "core/render/rasterizer_cache.h"
 #include "core/scene/environment.h"
 #include "core/scene/gaussian_cloud.h"
 #include "core/scene/gbuffer.h"
 
 namespace beam {
 
-// G-buffer of a view: everything that cloud and materials (may be null) can give. Keeps its rasteriser
-// between calls of one size.
+// G-buffer of a view: everything that the scene's attributes can give, materials where every instance has
+// some. Keeps its rasterisers between calls of `kept_sizes` sizes.
 class GBufferRenderer {
  public:
-  explicit GBufferRenderer(ComputeDevice& device);
-  ~GBufferRenderer();
-  GBuffer render(const GaussianCloud& cloud, const Materials* materials, const Camera& camera);
+  explicit GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes = 1);
+  GBuffer render(const ResidentScene& scene, const Camera& camera);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  RasterizerCache rasterizers_;
+  RasterImages images_;
 };
 
 // A panorama prepared for shading: irradiance SH, GGX-prefiltered levels, split-sum table. Preparing takes a

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/render/rasterizer.h"
+#include "core/render/resident_scene.h"
 #include "core/render/tracer.h"
 #include "core/render/training_ops.h"
 
@@ -23,6 +24,7 @@ class ComputeDevice {
   virtual ~ComputeDevice() = default;
   virtual DeviceInfo info() const = 0;
   virtual std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc& desc) = 0;
+  virtual std::unique_ptr<ResidentScene> newResidentScene() = 0;
   virtual std::unique_ptr<Tracer> newTracer(const TracerDesc& desc, const GaussianCloud& cloud) = 0;
   virtual std::unique_ptr<TrainingOps> newTrainingOps() = 0;
 };

@@ -1,20 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/gaussian_buffers.h"
 
+#include <algorithm>
+
+#include "core/base/parallel.h"
+
 namespace beam {
+
+void packPlanes(std::span<const float> values, std::size_t planes, std::size_t gaussians, std::size_t stride,
+                float* to) {
+  // Blocks of Gaussians that stay in the first cache while their planes are written one after the other.
+  constexpr std::size_t kBlock = 64, kGrain = 32;
+  parallelFor((gaussians + kBlock - 1) / kBlock, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin * kBlock; first < std::min(end * kBlock, gaussians); first += kBlock) {
+      const std::size_t last = std::min(first + kBlock, gaussians);
+      for (std::size_t p = 0; p < planes; ++p) {
+        for (std::size_t i = first; i < last; ++i) to[p * stride + i] = values[i * planes + p];
+      }
+    }
+  });
+}
+
+void packCloud(const GaussianCloud& cloud, GaussianBuffers& into, std::size_t first) {
+  using L = PlaneLayout;
+  const std::size_t n = cloud.size();
+  const auto at = [&](int plane) { return into.plane(plane) + first; };
+  for (std::size_t i = 0; i < n; ++i) {
+    const quat& q = cloud.rotation[i];
+    const float rotation[4] = {q.w, q.x, q.y, q.z};
+    for (int k = 0; k < 3; ++k) at(L::kPosition + k)[i] = cloud.position_m[i][k];
+    for (int k = 0; k < 4; ++k) at(L::kRotation + k)[i] = rotation[k];
+    for (int k = 0; k < 3; ++k) at(L::kScale + k)[i] = cloud.scale_m[i][k];
+  }
+  std::copy(cloud.opacity.begin(), cloud.opacity.end(), at(L::kOpacity));
+  packPlanes(cloud.color.coefficients, kShCount * 3, n, into.stride, at(L::kSh));
+}
 
 GaussianBuffers toBuffers(const GaussianCloud& cloud, int extra_channels) {
   GaussianBuffers b(cloud.size(), extra_channels);
-  using L = PlaneLayout;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const quat& q = cloud.rotation[i];
-    const float rotation[4] = {q.w, q.x, q.y, q.z};
-    for (int k = 0; k < 3; ++k) b.plane(L::kPosition + k)[i] = cloud.position_m[i][k];
-    for (int k = 0; k < 4; ++k) b.plane(L::kRotation + k)[i] = rotation[k];
-    for (int k = 0; k < 3; ++k) b.plane(L::kScale + k)[i] = cloud.scale_m[i][k];
-    b.plane(L::kOpacity)[i] = cloud.opacity[i];
-    for (int k = 0; k < kShCount * 3; ++k) b.plane(L::kSh + k)[i] = cloud.color.of(i)[k];
-  }
+  packCloud(cloud, b, 0);
   return b;
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/render/aligned.h"
@@ -35,6 +36,13 @@ struct GaussianBuffers {
   float* plane(int p) { return values.data() + stride * p; }
   const float* plane(int p) const { return values.data() + stride * p; }
 };
+
+// `values`: `planes` floats a Gaussian, one Gaussian after the other; into `to`, a plane every `stride`
+// floats.
+void packPlanes(std::span<const float> values, std::size_t planes, std::size_t gaussians, std::size_t stride,
+                float* to);
+// The cloud's Gaussians into `into` from Gaussian `first` on; its extra channels stay.
+void packCloud(const GaussianCloud& cloud, GaussianBuffers& into, std::size_t first);
 
 // Physical values into planes and back. `toCloud` normalises the quaternions.
 GaussianBuffers toBuffers(const GaussianCloud& cloud, int extra_channels = 0);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/render/resident_scene.h"
 
 namespace beam {
 namespace {
@@ -17,7 +18,8 @@ void require(bool ok, std::string_view what) {
 Rasterizer::Rasterizer(const RasterDesc& desc) : desc_(desc) {
   require(desc.width > 0 && desc.height > 0, "expected a positive picture size");
   require(desc.width <= 16384 && desc.height <= 16384, "expected at most 16384 pixels a side");
-  require(desc.extra_channels >= 0 && desc.extra_channels <= 16, "expected 0 to 16 extra channels");
+  require(desc.extra_channels >= 0 && desc.extra_channels <= 32, "expected 0 to 32 extra channels");
+  require(!desc.gradients || desc.extra_channels <= 16, "expected at most 16 extra channels with gradients");
 }
 
 void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree,
@@ -29,6 +31,20 @@ void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera,
   require(sh_degree >= 0 && sh_degree <= 3, "expected an SH degree of 0 to 3");
   doForward(gaussians, camera, sh_degree, background, images);
   ready_ = desc_.gradients;
+}
+
+void Rasterizer::forward(const ResidentScene& scene, std::span<const std::string> extra, const Camera& camera,
+                         vec3 background, RasterImages& images) {
+  require(!desc_.gradients, "a resident scene has no gradients");
+  require(camera.width == desc_.width && camera.height == desc_.height,
+          "the camera has another picture size");
+  int channels = 0;
+  for (const std::string& name : extra) {
+    require(scene.has(name), fmt::format("the scene has no attribute \"{}\"", name));
+    for (const AttributeInfo& info : scene.attributes()) channels += info.name == name ? info.channels : 0;
+  }
+  require(channels == desc_.extra_channels, "the attributes have another number of channels");
+  doForward(scene, extra, camera, background, images);
 }
 
 void Rasterizer::backward(const RasterImages& upstream, GaussianBuffers& gradients) {

@@ -6,6 +6,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "core/image/image.h"
 #include "core/render/gaussian_buffers.h"
@@ -13,14 +16,17 @@
 
 namespace beam {
 
+class ResidentScene;
+
 struct RasterDesc {
   int width = 0, height = 0;  // pixels
   bool color = true;          // spherical harmonics to rgb
   bool geometry = false;      // expected depth, median depth, normal
-  int extra_channels = 0;     // further blended floats a Gaussian, [0, 16]
+  int extra_channels = 0;     // further blended floats a Gaussian, [0, 32]; [0, 16] with gradients
   bool gradients = false;     // backward will be called
   float dilation_px2 =
       0;  // k added to the 2D covariance's diagonal (methods 1.3); 0: the 3D filter is in the scales
+  bool operator==(const RasterDesc&) const = default;
 };
 
 // Pictures of one view. Planes that the description does not ask for stay empty. As upstream gradients the
@@ -61,6 +67,13 @@ class Rasterizer {
   void forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree, vec3 background,
                RasterImages& images);
 
+  // Gaussians that the device holds, with all their SH; for pictures, never for gradients. `extra`: names of
+  // attributes of the scene whose channels, in this order, are the extra ones; SH is seen from the camera,
+  // not clamped. Throws Error{Bug} when the scene lacks one, is of another device, or their channels are not
+  // as many as described.
+  void forward(const ResidentScene& scene, std::span<const std::string> extra, const Camera& camera,
+               vec3 background, RasterImages& images);
+
   // dL/d(physical values), by central-difference-tested chain rule; overwrites `gradients` (same layout as
   // the Gaussians). Uses the state of the last forward, whose Gaussians must still be alive and unchanged.
   void backward(const RasterImages& upstream, GaussianBuffers& gradients);
@@ -74,6 +87,8 @@ class Rasterizer {
 
  private:
   virtual void doForward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree,
+                         vec3 background, RasterImages& images) = 0;
+  virtual void doForward(const ResidentScene& scene, std::span<const std::string> extra, const Camera& camera,
                          vec3 background, RasterImages& images) = 0;
   virtual void doBackward(const RasterImages& upstream, GaussianBuffers& gradients) = 0;
 

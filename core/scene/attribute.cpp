@@ -15,10 +15,10 @@ namespace {
 const AttributeInfo kOpacity{.name = "opacity"};
 const AttributeInfo kRadiance{
     .name = "radiance", .channels = 3, .coefficients = kShCount, .encoding = Encoding::Srgb};
-const AttributeInfo kRoughness{.name = "roughness"};
+const AttributeInfo kRoughness{.name = kRoughnessName};
 const AttributeInfo kBaseColor{
-    .name = "base_color", .channels = 3, .coefficients = kShCount, .encoding = Encoding::Linear};
-const AttributeInfo kOcclusion{.name = "ambient_occlusion", .coefficients = kShCount};
+    .name = kBaseColorName, .channels = 3, .coefficients = kShCount, .encoding = Encoding::Linear};
+const AttributeInfo kOcclusion{.name = kOcclusionName, .coefficients = kShCount};
 
 [[noreturn]] void bad(const AttributeInfo& info, const std::string& what) {
   throw Error(Error::Kind::Data, fmt::format("attribute \"{}\": {}", info.name, what));
@@ -26,16 +26,20 @@ const AttributeInfo kOcclusion{.name = "ambient_occlusion", .coefficients = kShC
 
 }  // namespace
 
-std::vector<AttributeSpan> attributesOf(const GaussianFrame& frame) {
-  std::vector<AttributeSpan> all = {{kOpacity, frame.cloud.opacity},
-                                    {kRadiance, frame.cloud.color.coefficients}};
-  if (const auto& m = frame.materials) {
+std::vector<AttributeSpan> attributesOf(const GaussianCloud& cloud, const Materials* m,
+                                        const std::vector<Attribute>& own) {
+  std::vector<AttributeSpan> all = {{kOpacity, cloud.opacity}, {kRadiance, cloud.color.coefficients}};
+  if (m) {
     all.push_back({kRoughness, m->roughness});
     all.push_back({kBaseColor, m->base_color.coefficients});
     all.push_back({kOcclusion, m->ambient_occlusion.coefficients});
   }
-  for (const Attribute& a : frame.attributes) all.push_back({a.info, a.values});
+  for (const Attribute& a : own) all.push_back({a.info, a.values});
   return all;
+}
+
+std::vector<AttributeSpan> attributesOf(const GaussianFrame& frame) {
+  return attributesOf(frame.cloud, frame.materials ? &*frame.materials : nullptr, frame.attributes);
 }
 
 void validate(const Attribute& a, std::size_t gaussians) {

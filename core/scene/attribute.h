@@ -13,7 +13,9 @@
 
 namespace beam {
 
+struct GaussianCloud;
 struct GaussianFrame;
+struct Materials;
 
 struct AttributeInfo {
   std::string name;  // snake_case, unique in a frame
@@ -40,8 +42,14 @@ struct AttributeSpan {
   std::span<const float> values;
 };
 
-// Every one of the frame: "opacity", "radiance", the materials' "roughness", "base_color",
-// "ambient_occlusion" where it has some, then its own. Valid as long as the frame.
+inline constexpr const char* kRoughnessName = "roughness";
+inline constexpr const char* kBaseColorName = "base_color";
+inline constexpr const char* kOcclusionName = "ambient_occlusion";
+
+// Every one: "opacity", "radiance", the materials' roughness, base colour and ambient occlusion where there
+// are some (null: none), then `own`. Valid as long as the values.
+std::vector<AttributeSpan> attributesOf(const GaussianCloud& cloud, const Materials* materials,
+                                        const std::vector<Attribute>& own);
 std::vector<AttributeSpan> attributesOf(const GaussianFrame& frame);
 
 // Throws Error{Data} unless it has 1 or 3 channels, 1 or kShCount coefficients, finite values for

@@ -36,7 +36,7 @@ bool needsMaterials(const std::string& channel) {
 class ChannelWriter {
  public:
   ChannelWriter(const GaussianSequence& sequence, const RenderRequest& request, ComputeDevice& device)
-      : sequence_(sequence), request_(request), renderer_(device) {
+      : sequence_(sequence), request_(request), device_(device), renderer_(device) {
     if (!request.world_frame) frame_from_world_ = sequence.captureFromWorld();
     if (!wants("relight")) return;
     for (const fs::path& file : request.environments) {
@@ -60,8 +60,10 @@ class ChannelWriter {
           Error::Kind::Data,
           fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, channel));
     }
+    if (request_.views.empty()) return;
+    const auto resident = residentOf(device_, *result);
     for (const View& view : request_.views) {
-      picture(*result, view, name);
+      picture(*resident, view, name);
       progress.step();
     }
   }
@@ -86,8 +88,8 @@ class ChannelWriter {
     writeMeshPly(request_.out / "mesh" / (name + ".ply"), transformed(*m, frame_from_world_));
   }
 
-  void picture(const GaussianFrame& r, const View& view, const std::string& name) {
-    const GBuffer g = renderer_.render(r.cloud, r.materials ? &*r.materials : nullptr, view.camera);
+  void picture(const ResidentScene& scene, const View& view, const std::string& name) {
+    const GBuffer g = renderer_.render(scene, view.camera);
     const std::string &camera = view.name, png = name + ".png", exr = name + ".exr";
     if (wants("rgb")) writePng(file("rgb", camera, png), bytesOf(g.radiance, false));
     if (wants("base_color")) {
@@ -121,6 +123,7 @@ class ChannelWriter {
 
   const GaussianSequence& sequence_;
   const RenderRequest& request_;
+  ComputeDevice& device_;
   GBufferRenderer renderer_;
   Similarity3 frame_from_world_;
   std::vector<Light> lights_;

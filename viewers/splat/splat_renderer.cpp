@@ -46,14 +46,16 @@ Lack lackOf(const SplatRequest& request) {
 }  // namespace
 
 SplatRenderer::SplatRenderer(std::shared_ptr<ComputeDevice> device)
-    : device_(std::move(device)), moving_(*device_), still_(*device_) {}
+    : device_(std::move(device)),
+      renderer_(*device_, 2),  // of the moving and of the resting picture
+      resident_(device_->newResidentScene()) {}
 
 const GBuffer& SplatRenderer::gbufferFor(const SplatRequest& r) {
   const bool kept = gbuffer_ && scene_.cloud == r.scene.cloud && scene_.materials == r.scene.materials &&
                     same(camera_, r.camera);
   if (!kept) {
-    GBufferRenderer& renderer = r.camera.width * r.camera.height < 300'000 ? moving_ : still_;
-    gbuffer_ = std::make_shared<GBuffer>(renderer.render(*r.scene.cloud, r.scene.materials.get(), r.camera));
+    resident_->load({{.cloud = r.scene.cloud, .materials = r.scene.materials, .attributes = nullptr}});
+    gbuffer_ = std::make_shared<GBuffer>(renderer_.render(*resident_, r.camera));
     lit_ = nullptr;
     scene_ = r.scene;
     camera_ = r.camera;

@@ -56,8 +56,9 @@ class SplatRenderer {
   const Image<vec3>& litFor(const SplatRequest& request);
 
   std::shared_ptr<ComputeDevice> device_;
-  GBufferRenderer moving_, still_;  // one for each size in turn, so that rasterisers are kept
-  SplatScene scene_;                // of gbuffer_
+  GBufferRenderer renderer_;
+  std::unique_ptr<ResidentScene> resident_;
+  SplatScene scene_;  // of gbuffer_
   Camera camera_;
   std::shared_ptr<const GBuffer> gbuffer_;
   std::shared_ptr<const PreparedLight> lit_by_;

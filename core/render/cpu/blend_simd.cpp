@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace beam {
 namespace HWY_NAMESPACE {
 
-constexpr int kMaxExtra = 16;
+constexpr int kMaxExtra = 16;  // of the backward pass
 
 struct TilePlace {
   int x0, y0;  // first pixel
@@ -51,11 +51,12 @@ void gatherBlocks(const TilePlace& t, const Planes* planes, int channel, BlockAr
   forEachPixel(t, [&](std::size_t p, int block, int lane) { to[block][lane] = plane[p]; });
 }
 
-template <bool kGeometry, bool kExtra>
-TileCounts forwardTile(RasterState& state, const GaussianBuffers& g, int tile, const PassImages& out) {
+// `kExtra`: room for extra channels.
+template <bool kGeometry, int kExtra>
+TileCounts forwardTile(RasterState& state, int tile, const PassImages& out) {
   const TilePlace place = placeOf(state, tile);
   alignas(64) BlockArray color[3] = {}, normal[3] = {}, depth = {}, median = {}, transmittance;
-  alignas(64) BlockArray extra[kExtra ? kMaxExtra : 1] = {};
+  alignas(64) BlockArray extra[kExtra > 0 ? kExtra : 1] = {};
   std::fill_n(&transmittance[0][0], 256, 1.0f);
   TileCounts counts;
   unsigned live = 0xffff;
@@ -92,9 +93,9 @@ TileCounts forwardTile(RasterState& state, const GaussianBuffers& g, int tile, c
         const Mask crossing = r.hit & (before > Lanes(0.5f)) & (t <= Lanes(0.5f));
         store(select(crossing, z, load(median[b])), median[b]);
       }
-      if constexpr (kExtra) {
+      if constexpr (kExtra > 0) {
         for (int e = 0; e < state.extra_channels; ++e) {
-          const Lanes value(g.plane(PlaneLayout::kExtra + e)[index]);
+          const Lanes value(out.extra_values[e][index]);
           store(fma(w, value, load(extra[e][b])), extra[e][b]);
         }
       }
@@ -119,7 +120,7 @@ TileCounts forwardTile(RasterState& state, const GaussianBuffers& g, int tile, c
     scatterBlocks(place, depth, out.depth->plane(0));
     scatterBlocks(place, median, out.median_depth->plane(0));
   }
-  if constexpr (kExtra) {
+  if constexpr (kExtra > 0) {
     for (int e = 0; e < state.extra_channels; ++e) scatterBlocks(place, extra[e], out.extra->plane(e));
   }
   return counts;
@@ -274,13 +275,16 @@ void weightsTile(const RasterState& state, int tile, std::vector<std::vector<Wei
   }
 }
 
-TileCounts forwardAny(RasterState& state, const GaussianBuffers& g, int tile, const PassImages& out) {
-  if (state.extra_channels > 0) {
-    return state.geometry ? forwardTile<true, true>(state, g, tile, out)
-                          : forwardTile<false, true>(state, g, tile, out);
-  }
-  return state.geometry ? forwardTile<true, false>(state, g, tile, out)
-                        : forwardTile<false, false>(state, g, tile, out);
+template <bool kGeometry>
+TileCounts forwardOf(RasterState& state, int tile, const PassImages& out) {
+  constexpr int kFew = 8;  // base colour, occlusion and roughness are five
+  if (state.extra_channels == 0) return forwardTile<kGeometry, 0>(state, tile, out);
+  return state.extra_channels <= kFew ? forwardTile<kGeometry, kFew>(state, tile, out)
+                                      : forwardTile<kGeometry, kMostExtra>(state, tile, out);
+}
+
+TileCounts forwardAny(RasterState& state, int tile, const PassImages& out) {
+  return state.geometry ? forwardOf<true>(state, tile, out) : forwardOf<false>(state, tile, out);
 }
 
 void backwardAny(RasterState& state, const GaussianBuffers& g, int tile, const PassGradients& in) {
@@ -303,9 +307,8 @@ HWY_EXPORT(forwardAny);
 HWY_EXPORT(backwardAny);
 HWY_EXPORT(weightsTile);
 
-TileCounts blendTileForward(RasterState& state, const GaussianBuffers& gaussians, int tile,
-                            const PassImages& images) {
-  return HWY_DYNAMIC_DISPATCH(forwardAny)(state, gaussians, tile, images);
+TileCounts blendTileForward(RasterState& state, int tile, const PassImages& images) {
+  return HWY_DYNAMIC_DISPATCH(forwardAny)(state, tile, images);
 }
 
 void blendTileBackward(RasterState& state, const GaussianBuffers& gaussians, int tile,

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/render/cpu/cpu_rasterizer.h"
+#include "core/render/cpu/cpu_resident_scene.h"
 #include "core/render/cpu/cpu_training_ops.h"
 #include "core/render/cpu/splat_bvh.h"
 #include "core/render/device.h"
@@ -63,6 +64,7 @@ class CpuDevice final : public ComputeDevice {
   std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc& desc) override {
     return makeCpuRasterizer(desc);
   }
+  std::unique_ptr<ResidentScene> newResidentScene() override { return std::make_unique<CpuResidentScene>(); }
   std::unique_ptr<Tracer> newTracer(const TracerDesc& desc, const GaussianCloud& cloud) override {
     const std::lock_guard lock(mutex_);
     return makeFollowingTracer(desc, cloud, tree_);

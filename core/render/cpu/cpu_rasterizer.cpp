@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/render/cpu/cpu_resident_scene.h"
 #include "core/render/cpu/raster_state.h"
 
 namespace beam {
@@ -105,6 +107,22 @@ class CpuRasterizer final : public Rasterizer {
 
   void doForward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree, vec3 background,
                  RasterImages& images) override {
+    std::vector<const float*> extra;
+    for (int e = 0; e < state_.extra_channels; ++e) extra.push_back(gaussians.plane(PlaneLayout::kExtra + e));
+    draw(gaussians, extra, camera, sh_degree, background, images);
+    if (desc().gradients) keepPictures(images);
+  }
+
+  void doForward(const ResidentScene& scene, std::span<const std::string> names, const Camera& camera,
+                 vec3 background, RasterImages& images) override {
+    const auto* resident = dynamic_cast<const CpuResidentScene*>(&scene);
+    if (!resident) throw Error(Error::Kind::Bug, "rasteriser: the scene is resident on another device");
+    const std::vector<const float*> extra = resident->seenFrom(vec3(centerOf(camera)), names, extra_seen_);
+    draw(resident->gaussians(), extra, camera, 3, background, images);
+  }
+
+  void draw(const GaussianBuffers& gaussians, const std::vector<const float*>& extra, const Camera& camera,
+            int sh_degree, vec3 background, RasterImages& images) {
     gaussians_ = &gaussians;
     prepare(gaussians, camera, sh_degree);
     const int w = desc().width, h = desc().height;
@@ -116,20 +134,21 @@ class CpuRasterizer final : public Rasterizer {
       size(images.normal, w, h, 3);
     }
     if (state_.extra_channels > 0) size(images.extra, w, h, state_.extra_channels);
-    const PassImages pass{&images.color,
-                          &images.alpha,
-                          &images.depth,
-                          &images.median_depth,
-                          &images.normal,
-                          &images.extra,
-                          {background.x, background.y, background.z}};
+    PassImages pass{&images.color,
+                    &images.alpha,
+                    &images.depth,
+                    &images.median_depth,
+                    &images.normal,
+                    &images.extra,
+                    {background.x, background.y, background.z},
+                    {}};
+    std::copy(extra.begin(), extra.end(), pass.extra_values);
     if (desc().gradients) state_.met_blocks.resize(state_.entries.size());
     parallelFor(tiles(), kTileGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
-        counts_[t] = blendTileForward(state_, gaussians, static_cast<int>(t), pass);
+        counts_[t] = blendTileForward(state_, static_cast<int>(t), pass);
       }
     });
-    if (desc().gradients) keepPictures(images);
   }
 
   // The backward pass starts from the blended pictures; the caller may reuse its own.
@@ -161,6 +180,7 @@ class CpuRasterizer final : public Rasterizer {
   std::vector<TileCounts> counts_;
   const GaussianBuffers* gaussians_ = nullptr;
   Planes color_, depth_, normal_, extra_;
+  AlignedVector<float> extra_seen_;
 };
 
 }  // namespace

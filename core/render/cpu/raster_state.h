@@ -105,15 +105,16 @@ class TileBinner {
 // SIMD steps (one instruction set chosen at run time; all give the same bits).
 void projectSplats(const GaussianBuffers& gaussians, RasterState& state, std::size_t begin, std::size_t end);
 
+inline constexpr int kMostExtra = 32;
 struct PassImages {
   Planes *color, *alpha, *depth, *median_depth, *normal, *extra;
   float background[3];
+  const float* extra_values[kMostExtra];  // a plane of the Gaussians each
 };
 struct TileCounts {
   std::uint64_t evaluated = 0, blended = 0;
 };
-TileCounts blendTileForward(RasterState& state, const GaussianBuffers& gaussians, int tile,
-                            const PassImages& images);
+TileCounts blendTileForward(RasterState& state, int tile, const PassImages& images);
 
 struct PassGradients {
   const Planes *color, *alpha, *depth, *median_depth, *normal, *extra;   // upstream; null or empty: zero

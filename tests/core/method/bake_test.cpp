@@ -273,7 +273,7 @@ TEST_F(RoundTrip, ReturnsTheColorAndTheRelitPicture) {
   int count = 0;
   GBufferRenderer renderer(*device);
   for (const Camera& camera : cameras(3, 0.5)) {
-    const GBuffer g = renderer.render(cloud, &materials, camera);
+    const GBuffer g = renderer.render(*residentOf(*device, cloud, &materials), camera);
     const Picture truth = photograph(camera, eveningLight());
     const Image<vec3> relit = shade(g, camera, evening, {});
     for (std::size_t i = 0; i < relit.pixels.size(); ++i) {

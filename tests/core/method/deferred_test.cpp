@@ -233,7 +233,7 @@ class SphereGBuffer : public ::testing::Test {
 TEST_F(SphereGBuffer, HoldsTheSphere) {
   const vec3 rho(0.2f, 0.5f, 0.7f);
   const Materials materials = constantMaterials(cloud.size(), rho, 0.6f, 0.35f);
-  const GBuffer g = GBufferRenderer(*device).render(cloud, &materials, testing_camera);
+  const GBuffer g = GBufferRenderer(*device).render(*residentOf(*device, cloud, &materials), testing_camera);
   const Rigid3 world_from_camera = inverse(testing_camera.camera_from_world);
   int inside = 0;
   for (int y = 0; y < 64; ++y) {
@@ -264,14 +264,14 @@ TEST_F(SphereGBuffer, HoldsTheSphere) {
 }
 
 TEST_F(SphereGBuffer, LeavesMaterialsEmptyWhenThereAreNone) {
-  const GBuffer g = GBufferRenderer(*device).render(cloud, nullptr, testing_camera);
+  const GBuffer g = GBufferRenderer(*device).render(*residentOf(*device, cloud, nullptr), testing_camera);
   EXPECT_TRUE(g.base_color.empty() && g.ambient_occlusion.empty() && g.roughness.empty());
   EXPECT_FALSE(g.alpha.empty() || g.radiance.empty());
 }
 
 TEST_F(SphereGBuffer, ClampsAfterBlending) {
   const Materials materials = constantMaterials(cloud.size(), vec3(1.4f, -0.3f, 0.5f), 1.2f, 0.5f);
-  const GBuffer g = GBufferRenderer(*device).render(cloud, &materials, testing_camera);
+  const GBuffer g = GBufferRenderer(*device).render(*residentOf(*device, cloud, &materials), testing_camera);
   EXPECT_EQ(g.base_color(32, 32).x, 1);
   EXPECT_EQ(g.base_color(32, 32).y, 0);
   EXPECT_EQ(g.ambient_occlusion(32, 32), 1);
@@ -279,7 +279,7 @@ TEST_F(SphereGBuffer, ClampsAfterBlending) {
 
 TEST_F(SphereGBuffer, IsBrightestWhereTheSunStands) {
   const Materials materials = constantMaterials(cloud.size(), vec3(0.5f), 1, 0.9f);
-  const GBuffer g = GBufferRenderer(*device).render(cloud, &materials, testing_camera);
+  const GBuffer g = GBufferRenderer(*device).render(*residentOf(*device, cloud, &materials), testing_camera);
   const PreparedLight light(sun(glm::normalize(vec3(1, 0, 1))));
   const auto brightestAt = [&](float yaw) {
     const Image<vec3> out = shade(g, testing_camera, light, {.yaw_rad = yaw});

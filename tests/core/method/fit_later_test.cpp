@@ -66,7 +66,7 @@ class LaterFit : public testing::MaterialFit {
     dvec2 sum(0);
     double count = 0;
     for (const Camera& camera : cameras) {
-      const GBuffer g = renderer.render(cloud, &m, camera);
+      const GBuffer g = renderer.render(*residentOf(*device, cloud, &m), camera);
       for (std::size_t i = 0; i < g.alpha.pixels.size(); ++i) {
         if (g.alpha.pixels[i] < 0.9f) continue;
         sum += dvec2(g.base_color.pixels[i].x, g.ambient_occlusion.pixels[i]) / double(g.alpha.pixels[i]);

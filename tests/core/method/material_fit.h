@@ -33,7 +33,7 @@ class MaterialFit : public ::testing::Test {
     std::vector<MaterialMaps> maps;
     GBufferRenderer renderer(*device);
     for (const Camera& camera : cameras) {
-      const GBuffer g = renderer.render(cloud, &m, camera);
+      const GBuffer g = renderer.render(*residentOf(*device, cloud, &m), camera);
       const int w = camera.width, h = camera.height;
       MaterialMaps map{camera, Planes(w, h, 1), Planes(w, h, 3), Planes(w, h, 1), Planes(w, h, 1)};
       for (std::size_t i = 0; i < g.alpha.pixels.size(); ++i) {
@@ -63,7 +63,8 @@ class MaterialFit : public ::testing::Test {
     Difference d;
     int count = 0;
     for (const Camera& camera : cameras) {
-      const GBuffer p = renderer.render(cloud, &a, camera), q = renderer.render(cloud, &b, camera);
+      const GBuffer p = renderer.render(*residentOf(*device, cloud, &a), camera),
+                    q = renderer.render(*residentOf(*device, cloud, &b), camera);
       for (std::size_t i = 0; i < p.alpha.pixels.size(); ++i) {
         if (p.alpha.pixels[i] < 0.9f) continue;
         const vec4 apart(p.base_color.pixels[i] - q.base_color.pixels[i],

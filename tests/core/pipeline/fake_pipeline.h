@@ -41,6 +41,7 @@ class FakeDevice final : public ComputeDevice {
  public:
   DeviceInfo info() const override { return {"fake", "Fake device"}; }
   std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc&) override { return nullptr; }
+  std::unique_ptr<ResidentScene> newResidentScene() override { return nullptr; }
   std::unique_ptr<Tracer> newTracer(const TracerDesc&, const GaussianCloud&) override { return nullptr; }
   std::unique_ptr<TrainingOps> newTrainingOps() override { return nullptr; }
 };
