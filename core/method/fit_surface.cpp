@@ -133,7 +133,7 @@ class SurfaceTrainer {
 
   void trainOnce(int step, int adam_step) {
     model_.activate();
-    loss_.gradient(model_.physical(), step, shDegree(step), gradients_);
+    loss_.gradient(model_.physical(), loss_.drawOf(step), shDegree(step), gradients_);
     const Regularizers regularizers =
         geometry_ ? Regularizers{}
                   : Regularizers{.opacity = static_cast<float>(options_.opacity_regularizer),

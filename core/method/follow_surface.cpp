@@ -75,7 +75,7 @@ class SkinFollower {
     const Pose skin = warp_.skin(joints_.pose());
     model_.place(skin);
     model_.activate();
-    loss_.gradient(model_.physical(), step, 3, gradients_);
+    loss_.gradient(model_.physical(), loss_.drawOf(step), 3, gradients_);
     PoseGradient of_skin(skin.size()), of_joints(joints_.pose().size());
     addPoseGradient(gradients_, of_skin);
     rigidEnergy(graph_, lists_, before_, skin, static_cast<float>(options_.smooth_weight), of_skin);

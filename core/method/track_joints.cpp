@@ -25,8 +25,9 @@ constexpr int kFewestNodes = 64;       // of a coarse level
 constexpr int kSmallestSide = 4;       // of its pictures, pixels
 constexpr float kRecolorRate = 0.01f;  // of SH band 0
 constexpr int kVelocityRounds = 8;
-constexpr int kSmoothRounds = 30;    // a standard deviation of about four spacings
-constexpr float kLevelDecay = 0.1f;  // learning rates of a level end at this share
+constexpr std::uint32_t kLevelBackgrounds = 0x7acc0u;  // plus the level: stream of the random backgrounds
+constexpr int kSmoothRounds = 30;                      // a standard deviation of about four spacings
+constexpr float kLevelDecay = 0.1f;                    // learning rates of a level end at this share
 
 // Indices in the order of farthest-point sampling from the first: every beginning of it covers the points
 // evenly.
@@ -72,41 +73,33 @@ int levelsOf(std::span<const FrameView> views, int wanted) {
 // The joints drawn at one level, on its pictures.
 class LevelView {
  public:
-  LevelView(std::span<const FrameView> views, int level, const GaussianCloud& joints, double mask_weight,
-            ComputeDevice& device)
-      : ops_(device.newTrainingOps()), mask_weight_(mask_weight) {
-    views_ = level > 0 ? cropToMasks(shrunkAll(views, 1 << level)) : cropToMasks(views);
-    std::vector<Camera> cameras;
-    for (const TrainingView& v : views_) cameras.push_back(v.camera);
+  LevelView(std::span<const FrameView> views, int level, const GaussianCloud& joints,
+            const ViewLossOptions& options, ComputeDevice& device)
+      : loss_(level > 0 ? ViewLoss(shrunkAll(views, 1 << level), options, false, device)
+                        : ViewLoss(views, options, false, device)),
+        pixel_m_(pixelAtSubject(loss_.cameras(), joints.position_m)) {
     GaussianModel model(joints);
     // That of full pictures is in the joints already (fitFirstJoints).
-    if (level > 0) model.updateFilter(cameras, 1);
+    if (level > 0) model.updateFilter(loss_.cameras(), 1);
     model.activate();
     drawn_ = model.physical();
-    const RasterDesc desc{.width = cameras[0].width, .height = cameras[0].height, .gradients = true};
-    raster_ = device.newRasterizer(desc);
-    pixel_m_ = pixelAtSubject(cameras, joints.position_m);
   }
 
-  std::size_t size() const { return views_.size(); }
+  std::size_t size() const { return loss_.size(); }
   double pixelSize() const { return pixel_m_; }  // metres at the subject
-  TrainingOps& ops() { return *ops_; }
+  TrainingOps& ops() { return loss_.ops(); }
+  ViewDraw drawOf(int step, std::uint32_t stream) const { return loss_.drawOf(step, stream); }
 
-  // The loss of one view; adds its gradient when one is asked for.
-  double loss(const Pose& pose, std::size_t view, vec3 background, PoseGradient* gradient) {
-    const TrainingView& v = views_[view];
-    if (v.mask.empty()) background = vec3(0);
+  double loss(const Pose& pose, ViewDraw what) {
     setPose(drawn_, pose);
-    compose(v, background, target_);
-    raster_->forward(drawn_, v.camera, 3, background, images_);
-    acceptUnknown(v, images_.color, target_);
-    const double l1 = ops_->photometric(images_.color, target_, 0, upstream_.color).total;
-    const double mask = maskLoss(images_.alpha, v, mask_weight_, upstream_.alpha);
-    if (gradient) {
-      raster_->backward(upstream_, gradients_);
-      addPoseGradient(gradients_, *gradient);
-    }
-    return l1 + mask;
+    loss_.draw(drawn_, what, 3);
+    return loss_.compare().total();
+  }
+  // Adds the gradient of one view's loss.
+  void addGradient(const Pose& pose, ViewDraw what, PoseGradient& gradient) {
+    loss(pose, what);
+    loss_.backward(gradients_);
+    addPoseGradient(gradients_, gradient);
   }
 
   // Mean over all views on black.
@@ -114,21 +107,21 @@ class LevelView {
     double sum = 0;
     for (std::size_t v = 0; v < size(); ++v) {
       progress.check();
-      sum += loss(pose, v, vec3(0), nullptr);
+      sum += loss(pose, {.view = v});
     }
     return sum / static_cast<double>(size());
   }
 
  private:
-  std::unique_ptr<TrainingOps> ops_;
-  double mask_weight_;
-  std::vector<TrainingView> views_;
+  ViewLoss loss_;
   GaussianBuffers drawn_, gradients_;
-  std::unique_ptr<Rasterizer> raster_;
-  double pixel_m_ = 0;
-  Planes target_;
-  RasterImages images_, upstream_;
+  double pixel_m_;
 };
+
+// Of the joints: L1 and the mask (BEAM 3.1).
+ViewLossOptions jointLoss(double mask_weight, int seed) {
+  return {.ssim_weight = 0, .mask_weight = mask_weight, .seed = seed};
+}
 
 class JointTracker {
  public:
@@ -156,7 +149,8 @@ class JointTracker {
     TrackedJoints result;
     for (int level = levels_; level >= 0; --level) {
       progress.check();
-      LevelView view(views_, level, history_.previous, options_.mask_weight, device_);
+      LevelView view(views_, level, history_.previous, jointLoss(options_.mask_weight, options_.seed),
+                     device_);
       if (level == levels_) predict(view, progress);
       const double rigid = level > 0 ? moveNodes(level, view, progress) : moveJoints(view, progress);
       if (preview) preview(std::make_shared<GaussianCloud>(posed()));
@@ -232,9 +226,7 @@ class JointTracker {
       PoseGradient of_joints(joints.size()), of_model(pose.size());
       for (std::size_t b = 0; b < batch; ++b) {
         const int at = step * static_cast<int>(batch) + static_cast<int>(b);
-        const RandomStream random(options_.seed, at, 0x7acc0u + level);
-        view.loss(joints, viewOfStep(at, view.size(), options_.seed),
-                  vec3(random.uniform(0), random.uniform(1), random.uniform(2)), &of_joints);
+        view.addGradient(joints, view.drawOf(at, kLevelBackgrounds + level), of_joints);
       }
       if (warp) {
         warp->backward(pose, of_joints, of_model);
@@ -257,13 +249,13 @@ class JointTracker {
   // A body that turns is shaded anew, and colours of another shading pull the joints off the skin. Only what
   // changes alike over neighbours is taken on: shading is smooth, and the texture is what holds the joints.
   void recolor(GaussianCloud& joints, Progress& progress) {
-    ViewLoss loss(views_, {.ssim_weight = 0, .mask_weight = 0, .seed = options_.seed}, false, device_);
+    ViewLoss loss(views_, jointLoss(0, options_.seed), false, device_);
     GaussianModel model(joints);
     GaussianBuffers gradients;
     for (int step = 0; step < options_.recolor_iterations; ++step) {
       progress.step();
       model.activate();
-      loss.gradient(model.physical(), step, 3, gradients);
+      loss.gradient(model.physical(), loss.drawOf(step), 3, gradients);
       const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step, options_.recolor_iterations));
       model.step(gradients, {0, 0, 0, 0, kRecolorRate * decay, 0}, 3, {}, step + 1, loss.ops());
     }
@@ -324,7 +316,7 @@ TrackedJoints trackJoints(std::span<const FrameView> views, const JointHistory& 
 
 double jointResidual(std::span<const FrameView> views, const GaussianCloud& joints, double mask_weight,
                      ComputeDevice& device, const Progress& progress) {
-  return LevelView(views, 0, joints, mask_weight, device).lossOfAll(poseOf(joints), progress);
+  return LevelView(views, 0, joints, jointLoss(mask_weight, 0), device).lossOfAll(poseOf(joints), progress);
 }
 
 static void describeAdvanced(Fields& f, TrackJointsOptions& o);
