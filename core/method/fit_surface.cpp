@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/knn.h"
+#include "core/method/training_loop.h"
 #include "core/method/visual_hull.h"
 #include "core/optim/mcmc.h"
 #include "core/optim/schedule.h"
@@ -18,6 +19,7 @@ constexpr int kNeighbors = 12;
 constexpr float kSeedOpacity = 0.3f;
 constexpr float kSeedThinness = 0.35f;  // of the in-plane size: seeds lie on a surface
 constexpr float kInsideShare = 0.9f;    // of the views: a Gaussian outside more masks is pruned (methods 3.8)
+constexpr float kDeadOpacity = 0.005f;
 
 // The direction in which the points scatter least: smallest eigenvector of their covariance, by inverse
 // iteration.
@@ -72,58 +74,40 @@ GaussianCloud initialCloud(const PointCloud& seeds) {
   return c;
 }
 
-class SurfaceTrainer {
+// Positions learn as everything else; before E_normal acts MCMC moves, adds and replaces Gaussians.
+class SurfaceRule final : public TrainingRule {
  public:
-  SurfaceTrainer(std::span<const FrameView> views, const GaussianCloud& cloud,
-                 const FitSurfaceOptions& options, bool geometry, ComputeDevice& device)
+  // `extent_m`: what position rates are relative to. `count`: Gaussians at the first step.
+  SurfaceRule(const FitSurfaceOptions& options, bool geometry, float extent_m, std::size_t count)
       : options_(options),
         geometry_(geometry),
-        loss_(views, lossOptions(options), geometry, device),
-        model_(cloud),
-        extent_(sceneExtent(views)) {
-    refine_start_ = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
+        extent_m_(extent_m),
+        first_count_(static_cast<int>(count)),
+        refine_start_(halfOf(options.iterations, options.refine_fraction, true).begin) {}
+
+  int shDegree(int step) const override { return std::min(3, step / std::max(1, options_.iterations / 30)); }
+
+  ModelStep learn(TrainingStep step, const GaussianBuffers& /*gradients*/, TrainingOps& /*ops*/) override {
+    if (geometry_) return {rates(step.index), {}};
+    return {rates(step.index),
+            {.opacity = static_cast<float>(options_.opacity_regularizer),
+             .scale = static_cast<float>(options_.scale_regularizer),
+             .isotropy = static_cast<float>(options_.isotropy_weight),
+             .size = static_cast<float>(options_.size_weight)}};
   }
 
-  // For a cloud whose values hold the filter already.
-  void takeFilterOut() { model_.takeFilterOut(loss_.cameras(), static_cast<float>(options_.filter)); }
-
-  void run(int begin, int end, Progress& progress, const CloudPreview& preview) {
-    progress.expect(end - begin, "iterations");
-    TimedPreview shown(preview);
-    const int first_cap = static_cast<int>(model_.size());
-    for (int step = begin; step < end; ++step) {
-      progress.step();
-      if (step % kFilterEvery == 0 || step == begin)
-        model_.updateFilter(loss_.cameras(), static_cast<float>(options_.filter));
-      trainOnce(step, step - begin + 1);
-      if (!geometry_) changeCount(step, first_cap);
-      shown.offer(model_);
-    }
+  void finish(GaussianModel& model, TrainingStep step) override {
+    if (geometry_) return;
+    model.addNoise(static_cast<float>(options_.noise) * rates(step.index).position_m, options_.seed,
+                   step.index);
+    changeCount(model, step.index);
   }
-
-  void pruneOutsideHull(const VisualHull& hull) {
-    const GaussianBuffers& g = model_.physical();
-    std::vector<std::uint8_t> keep(model_.size(), 1);
-    for (std::size_t i = 0; i < keep.size(); ++i) {
-      const auto v = hull.votes({g.plane(0)[i], g.plane(1)[i], g.plane(2)[i]});
-      if (v.seen > 0 && static_cast<float>(v.inside) < kInsideShare * static_cast<float>(v.seen)) keep[i] = 0;
-      if (model_.opacity(i) < kDeadOpacity) keep[i] = 0;
-    }
-    model_.keep(keep);
-  }
-
-  GaussianCloud cloud() const { return model_.cloud(); }
 
  private:
-  static constexpr int kFilterEvery = 100;
-  static constexpr float kDeadOpacity = 0.005f;
-
-  int shDegree(int step) const { return std::min(3, step / std::max(1, options_.iterations / 30)); }
-
   LearningRates rates(int step) const {
     LearningRates r;
     const auto decay = static_cast<float>(logLinear(1.0, 0.01, step, options_.iterations));
-    r.position_m = static_cast<float>(options_.position_rate) * decay * extent_;
+    r.position_m = static_cast<float>(options_.position_rate) * decay * extent_m_;
     r.opacity_logit = static_cast<float>(options_.opacity_rate);
     r.log_scale = static_cast<float>(options_.scale_rate);
     r.color_dc = static_cast<float>(options_.color_rate);
@@ -131,39 +115,41 @@ class SurfaceTrainer {
     return r;
   }
 
-  void trainOnce(int step, int adam_step) {
-    model_.activate();
-    loss_.gradient(model_.physical(), loss_.drawOf(step), shDegree(step), gradients_);
-    const Regularizers regularizers =
-        geometry_ ? Regularizers{}
-                  : Regularizers{.opacity = static_cast<float>(options_.opacity_regularizer),
-                                 .scale = static_cast<float>(options_.scale_regularizer),
-                                 .isotropy = static_cast<float>(options_.isotropy_weight),
-                                 .size = static_cast<float>(options_.size_weight)};
-    const LearningRates r = rates(step);
-    model_.step(gradients_, r, shDegree(step), regularizers, adam_step, loss_.ops());
-    if (!geometry_) model_.addNoise(static_cast<float>(options_.noise) * r.position_m, options_.seed, step);
-  }
-
   // MCMC every `interval` steps; the growth reaches the cap half way through the appearance steps.
-  void changeCount(int step, int first_count) {
+  void changeCount(GaussianModel& model, int step) const {
     const int interval = options_.iterations >= 10000 ? 100 : 50;
     const int start = std::min(500, refine_start_ / 10), stop = refine_start_ * 5 / 6;
     if (step < start || step >= stop || step % interval != 0) return;
-    relocateDead(model_, options_.seed, step);
+    relocateDead(model, options_.seed, step);
     const double rounds = std::max(1.0, (refine_start_ * 0.5 - start) / interval);
-    const double factor = std::pow(static_cast<double>(options_.cap) / first_count, 1.0 / rounds);
-    grow(model_, std::max(1.0, factor), options_.cap, options_.seed, step);
+    const double factor = std::pow(static_cast<double>(options_.cap) / first_count_, 1.0 / rounds);
+    grow(model, std::max(1.0, factor), options_.cap, options_.seed, step);
   }
 
-  FitSurfaceOptions options_;
+  const FitSurfaceOptions& options_;
   bool geometry_;
-  ViewLoss loss_;
-  GaussianModel model_;
-  float extent_;
-  int refine_start_ = 0;
-  GaussianBuffers gradients_;
+  float extent_m_;
+  int first_count_, refine_start_;
 };
+
+void trainSurface(TrainingLoop& loop, std::span<const FrameView> views, const FitSurfaceOptions& options,
+                  bool geometry, Progress& progress, const CloudPreview& preview) {
+  const TrainingSpan span = halfOf(options.iterations, options.refine_fraction, geometry);
+  SurfaceRule rule(options, geometry, sceneExtent(views), loop.model().size());
+  progress.expect(span.end - span.begin, "iterations");
+  loop.run(span, rule, progress, preview);
+}
+
+void pruneOutsideHull(GaussianModel& model, const VisualHull& hull) {
+  const GaussianBuffers& g = model.physical();
+  std::vector<std::uint8_t> keep(model.size(), 1);
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    const auto v = hull.votes({g.plane(0)[i], g.plane(1)[i], g.plane(2)[i]});
+    if (v.seen > 0 && static_cast<float>(v.inside) < kInsideShare * static_cast<float>(v.seen)) keep[i] = 0;
+    if (model.opacity(i) < kDeadOpacity) keep[i] = 0;
+  }
+  model.keep(keep);
+}
 
 }  // namespace
 
@@ -327,21 +313,19 @@ ViewLossOptions lossOptions(const FitSurfaceOptions& o) {
 GaussianCloud fitAppearance(std::span<const FrameView> views, const PointCloud& seeds,
                             const FitSurfaceOptions& options, ComputeDevice& device, Progress& progress,
                             const CloudPreview& preview) {
-  SurfaceTrainer trainer(views, initialCloud(seeds), options, false, device);
-  const int end = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
-  trainer.run(0, end, progress, preview);
-  return trainer.cloud();
+  TrainingLoop loop(views, lossOptions(options), false, initialCloud(seeds), options.filter, device);
+  trainSurface(loop, views, options, false, progress, preview);
+  return loop.model().cloud();
 }
 
 GaussianCloud refineGeometry(std::span<const FrameView> views, const GaussianCloud& cloud,
                              const FitSurfaceOptions& options, ComputeDevice& device, Progress& progress,
                              const CloudPreview& preview) {
-  SurfaceTrainer trainer(views, cloud, options, true, device);
-  const int begin = static_cast<int>(std::lround(options.iterations * (1 - options.refine_fraction)));
-  trainer.takeFilterOut();
-  trainer.run(begin, options.iterations, progress, preview);
-  trainer.pruneOutsideHull(VisualHull(views));
-  return trainer.cloud();
+  TrainingLoop loop(views, lossOptions(options), true, cloud, options.filter, device);
+  loop.takeFilterOut(loop.model());  // the values hold it already
+  trainSurface(loop, views, options, true, progress, preview);
+  pruneOutsideHull(loop.model(), VisualHull(views));
+  return loop.model().cloud();
 }
 
 }  // namespace beam

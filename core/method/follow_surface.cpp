@@ -5,6 +5,7 @@
 
 #include "core/math/quaternion.h"
 #include "core/method/joint_warp.h"
+#include "core/method/training_loop.h"
 #include "core/optim/gaussian_model.h"
 #include "core/optim/rigid_energy.h"
 #include "core/optim/schedule.h"
@@ -15,16 +16,13 @@ namespace {
 constexpr double kReach = 1.8;  // length of their weights in mean spacings: 0.02 m of methods 3.2
 constexpr float kDecay = 0.1f;  // learning rates end at this share
 
-class SkinFollower {
+// The joints carry the Gaussians and learn under E_smooth, the residuals beside them where they are free.
+class FollowRule final : public TrainingRule {
  public:
-  SkinFollower(std::span<const FrameView> views, const FollowInput& input, const CarriedSkin& start,
-               const FitSurfaceOptions& fit, const FollowSurfaceOptions& options, bool geometry,
-               ComputeDevice& device)
-      : fit_(fit),
-        options_(options),
-        geometry_(geometry),
-        loss_(views, lossOptions(fit), geometry, device),
-        model_(input.previous.cloud),
+  FollowRule(const FollowInput& input, const CarriedSkin& start, const FollowSurfaceOptions& options,
+             bool residual, float extent_m, double pixel_m)
+      : options_(options),
+        residual_(residual),
         before_(poseOf(input.previous.cloud)),
         reference_rest_(input.previous.rest_skin),
         graph_(surfaceGraph(reference_rest_.position_m, kReach)),
@@ -32,65 +30,38 @@ class SkinFollower {
         warp_(start.rest_skin, input.rest_joints, boundTo(reference_rest_, input.rest_joints)),
         joints_(start.joints),
         rest_(start.rest_skin),
-        extent_m_(sceneExtent(views)),
-        pixel_m_(pixelAtSubject(loss_.cameras(), start.joints.position_m)) {
-    model_.takeFilterOut(loss_.cameras(), static_cast<float>(fit_.filter));
-    model_.keepReference();
-    if (geometry) startFrom(start.cloud);
+        extent_m_(extent_m),
+        pixel_m_(pixel_m) {}
+
+  void place(GaussianModel& model) override {
+    skin_ = warp_.skin(joints_.pose());
+    model.place(skin_);
   }
 
-  FollowedSkin run(int begin, int end, Progress& progress, const CloudPreview& preview) {
-    progress.expect(end - begin, "iterations");
-    TimedPreview shown(preview);
-    for (int step = begin; step < end; ++step) {
-      progress.step();
-      if ((step - begin) % kFilterEvery == 0) filterAtPose();
-      trainOnce(step, step - begin + 1);
-      shown.offer(model_);
-    }
-    filterAtPose();
-    PoseGradient ignored(rest_.pose().size());
-    const Pose skin = warp_.skin(joints_.pose());
-    return {{model_.cloud(), rest_.pose(), joints_.pose()},
-            rigidEnergy(graph_, lists_, before_, skin, 0, ignored),
-            model_.temporalEnergy(Regularizers{}.temporal_shape)};
+  ModelStep learn(TrainingStep step, const GaussianBuffers& gradients, TrainingOps& ops) override {
+    PoseGradient of_skin(skin_.size()), of_joints(joints_.pose().size());
+    addPoseGradient(gradients, of_skin);
+    rigidEnergy(graph_, lists_, before_, skin_, static_cast<float>(options_.smooth_weight), of_skin);
+    if (options_.rest_weight > 0)
+      rigidEnergy(graph_, lists_, reference_rest_, skin_, static_cast<float>(options_.rest_weight), of_skin);
+    warp_.backward(joints_.pose(), of_skin, of_joints);
+    const auto decay = static_cast<float>(logLinear(1, kDecay, step.index, options_.iterations));
+    if (residual_) moveRest(of_skin, decay, step.adam, ops);
+    joints_.step(of_joints, static_cast<float>(options_.joint_rate * pixel_m_) * decay,
+                 static_cast<float>(options_.joint_rotation_rate) * decay, step.adam, ops);
+    return {rates(decay), {.temporal = static_cast<float>(options_.temporal_weight)}};
   }
+
+  // Of the pose that was placed last.
+  double smoothEnergy() const {
+    PoseGradient ignored(rest_.pose().size());
+    return rigidEnergy(graph_, lists_, before_, skin_, 0, ignored);
+  }
+  const Pose& rest() const { return rest_.pose(); }
+  const Pose& joints() const { return joints_.pose(); }
 
  private:
-  static constexpr int kFilterEvery = 100;
-
-  // The reference of E_temp stays that of the frame before.
-  void startFrom(const GaussianCloud& cloud) {
-    GaussianModel started(cloud);
-    started.takeFilterOut(loss_.cameras(), static_cast<float>(fit_.filter));
-    model_.takeAppearance(started);
-  }
-
-  void filterAtPose() {
-    model_.place(warp_.skin(joints_.pose()));
-    model_.updateFilter(loss_.cameras(), static_cast<float>(fit_.filter));
-  }
-
-  void trainOnce(int step, int adam_step) {
-    const Pose skin = warp_.skin(joints_.pose());
-    model_.place(skin);
-    model_.activate();
-    loss_.gradient(model_.physical(), loss_.drawOf(step), 3, gradients_);
-    PoseGradient of_skin(skin.size()), of_joints(joints_.pose().size());
-    addPoseGradient(gradients_, of_skin);
-    rigidEnergy(graph_, lists_, before_, skin, static_cast<float>(options_.smooth_weight), of_skin);
-    if (options_.rest_weight > 0)
-      rigidEnergy(graph_, lists_, reference_rest_, skin, static_cast<float>(options_.rest_weight), of_skin);
-    warp_.backward(joints_.pose(), of_skin, of_joints);
-    const auto decay = static_cast<float>(logLinear(1, kDecay, step, options_.iterations));
-    if (geometry_ && options_.residual) moveRest(of_skin, decay, adam_step);
-    joints_.step(of_joints, static_cast<float>(options_.joint_rate * pixel_m_) * decay,
-                 static_cast<float>(options_.joint_rotation_rate) * decay, adam_step, loss_.ops());
-    model_.step(gradients_, rates(decay), 3, {.temporal = static_cast<float>(options_.temporal_weight)},
-                adam_step, loss_.ops());
-  }
-
-  void moveRest(const PoseGradient& of_skin, float decay, int adam_step) {
+  void moveRest(const PoseGradient& of_skin, float decay, int adam_step, TrainingOps& ops) {
     const Pose& rest = rest_.pose();
     PoseGradient of_rest(rest.size());
     warp_.backwardToRest(joints_.pose(), of_skin, of_rest);
@@ -100,7 +71,7 @@ class SkinFollower {
       of_rest.rotation[i] += tie * toVec4(rest.rotation[i] - reference_rest_.rotation[i]);
     }
     rest_.step(of_rest, static_cast<float>(options_.residual_rate) * extent_m_ * decay,
-               static_cast<float>(options_.residual_rotation_rate) * decay, adam_step, loss_.ops());
+               static_cast<float>(options_.residual_rotation_rate) * decay, adam_step, ops);
     warp_.setRestSkin(rest_.pose());
   }
 
@@ -113,23 +84,48 @@ class SkinFollower {
             .color_rest = static_cast<float>(options_.color_rate) * decay / 2};
   }
 
-  FitSurfaceOptions fit_;
-  FollowSurfaceOptions options_;
-  bool geometry_;
-  ViewLoss loss_;
-  GaussianModel model_;
+  const FollowSurfaceOptions& options_;
+  bool residual_;
   Pose before_, reference_rest_;
   Anchors graph_;
   AnchorLists lists_;
   JointWarp warp_;
   PoseModel joints_, rest_;
+  Pose skin_;  // as placed last
   float extent_m_;
   double pixel_m_;
-  GaussianBuffers gradients_;
 };
 
-int refineStart(const FollowSurfaceOptions& o) {
-  return static_cast<int>(std::lround(o.iterations * (1 - o.refine_fraction)));
+struct Half {
+  const CarriedSkin& start;
+  const FitSurfaceOptions& fit;
+  const FollowSurfaceOptions& options;
+  bool geometry;
+};
+
+FollowedSkin followHalf(std::span<const FrameView> views, const FollowInput& input, const Half& half,
+                        ComputeDevice& device, Progress& progress, const CloudPreview& preview) {
+  const FollowSurfaceOptions& o = half.options;
+  TrainingLoop loop(views, lossOptions(half.fit), half.geometry, input.previous.cloud, half.fit.filter,
+                    device);
+  GaussianModel& model = loop.model();
+  loop.takeFilterOut(model);
+  model.keepReference();  // of E_temp: that of the frame before, whatever the fit starts from
+  if (half.geometry) {
+    GaussianModel started(half.start.cloud);
+    loop.takeFilterOut(started);
+    model.takeAppearance(started);
+  }
+  FollowRule rule(input, half.start, o, half.geometry && o.residual, sceneExtent(views),
+                  pixelAtSubject(loop.cameras(), half.start.joints.position_m));
+  TrainingSpan span = halfOf(o.iterations, o.refine_fraction, half.geometry);
+  span.filter_from = span.begin;
+  progress.expect(span.end - span.begin, "iterations");
+  loop.run(span, rule, progress, preview);
+  loop.place(rule);
+  return {{model.cloud(), rule.rest(), rule.joints()},
+          rule.smoothEnergy(),
+          model.temporalEnergy(Regularizers{}.temporal_shape)};
 }
 
 }  // namespace
@@ -156,16 +152,14 @@ FollowedSkin followAppearance(std::span<const FrameView> views, const FollowInpu
                               const FitSurfaceOptions& fit, const FollowSurfaceOptions& options,
                               ComputeDevice& device, Progress& progress, const CloudPreview& preview) {
   const CarriedSkin start{input.previous.cloud, input.previous.rest_skin, input.joints};
-  return SkinFollower(views, input, start, fit, options, false, device)
-      .run(0, refineStart(options), progress, preview);
+  return followHalf(views, input, {start, fit, options, false}, device, progress, preview);
 }
 
 FollowedSkin followGeometry(std::span<const FrameView> views, const FollowInput& input,
                             const CarriedSkin& start, const FitSurfaceOptions& fit,
                             const FollowSurfaceOptions& options, ComputeDevice& device, Progress& progress,
                             const CloudPreview& preview) {
-  return SkinFollower(views, input, start, fit, options, true, device)
-      .run(refineStart(options), options.iterations, progress, preview);
+  return followHalf(views, input, {start, fit, options, true}, device, progress, preview);
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/method/fit_surface.h"
 #include "core/method/joint_warp.h"
+#include "core/method/training_loop.h"
 #include "core/method/training_views.h"
 #include "core/method/view_loss.h"
 #include "core/optim/gaussian_model.h"
@@ -122,6 +123,19 @@ class LevelView {
 ViewLossOptions jointLoss(double mask_weight, int seed) {
   return {.ssim_weight = 0, .mask_weight = mask_weight, .seed = seed};
 }
+
+// Band 0 of the colours alone.
+class ShadingRule final : public TrainingRule {
+ public:
+  explicit ShadingRule(int steps) : steps_(steps) {}
+  ModelStep learn(TrainingStep step, const GaussianBuffers& /*gradients*/, TrainingOps& /*ops*/) override {
+    const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step.index, steps_));
+    return {{0, 0, 0, 0, kRecolorRate * decay, 0}, {}};
+  }
+
+ private:
+  int steps_;
+};
 
 class JointTracker {
  public:
@@ -249,17 +263,10 @@ class JointTracker {
   // A body that turns is shaded anew, and colours of another shading pull the joints off the skin. Only what
   // changes alike over neighbours is taken on: shading is smooth, and the texture is what holds the joints.
   void recolor(GaussianCloud& joints, Progress& progress) {
-    ViewLoss loss(views_, jointLoss(0, options_.seed), false, device_);
-    GaussianModel model(joints);
-    GaussianBuffers gradients;
-    for (int step = 0; step < options_.recolor_iterations; ++step) {
-      progress.step();
-      model.activate();
-      loss.gradient(model.physical(), loss.drawOf(step), 3, gradients);
-      const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step, options_.recolor_iterations));
-      model.step(gradients, {0, 0, 0, 0, kRecolorRate * decay, 0}, 3, {}, step + 1, loss.ops());
-    }
-    const GaussianCloud changed = model.cloud();
+    ShadingRule rule(options_.recolor_iterations);
+    TrainingLoop loop(views_, jointLoss(0, options_.seed), false, joints, 0, device_);
+    loop.run({.end = options_.recolor_iterations}, rule, progress);
+    const GaussianCloud changed = loop.model().cloud();
     std::vector<vec3> shading(joints.size());
     for (std::size_t i = 0; i < joints.size(); ++i) {
       for (int c = 0; c < 3; ++c) shading[i][c] = changed.color.of(i)[c] - joints.color.of(i)[c];
