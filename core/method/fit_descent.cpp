@@ -7,13 +7,16 @@
 #include "core/base/rng.h"
 #include "core/math/color.h"
 #include "core/render/rasterizer_cache.h"
+#include "core/optim/learning_rates.h"
 
 namespace beam {
 namespace {
 
-constexpr float kSsimWeight = 0.2f;                       // methods 5.10
-constexpr float kDcRate = 2.5e-3f, kRestRate = 1.25e-4f;  // of Adam (methods 1.11)
-constexpr float kSlopeFloor = 1e-3f;                      // where the slope of sRGB is taken at least
+constexpr float kSsimWeight = 0.2f;  // methods 5.10
+constexpr auto kDcRate = static_cast<float>(kFirstFrameRates.color);
+constexpr auto kRestRate = static_cast<float>(kFirstFrameRates.color / kFirstFrameRates.rest_divisor);
+static_assert(kRestRate == 1.25e-4f);
+constexpr float kSlopeFloor = 1e-3f;  // where the slope of sRGB is taken at least
 
 float encoded(MapKind kind, float v) {
   return kind == MapKind::BaseColor ? srgbFromLinear(std::max(v, 0.0f)) : v;

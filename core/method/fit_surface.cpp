@@ -10,7 +10,6 @@
 #include "core/method/training_loop.h"
 #include "core/method/visual_hull.h"
 #include "core/optim/mcmc.h"
-#include "core/optim/schedule.h"
 
 namespace beam {
 namespace {
@@ -105,14 +104,7 @@ class SurfaceRule final : public TrainingRule {
 
  private:
   LearningRates rates(int step) const {
-    LearningRates r;
-    const auto decay = static_cast<float>(logLinear(1.0, 0.01, step, options_.iterations));
-    r.position_m = static_cast<float>(options_.position_rate) * decay * extent_m_;
-    r.opacity_logit = static_cast<float>(options_.opacity_rate);
-    r.log_scale = static_cast<float>(options_.scale_rate);
-    r.color_dc = static_cast<float>(options_.color_rate);
-    r.color_rest = r.color_dc / 20;
-    return r;
+    return ratesAt(options_.rates, step, options_.iterations, extent_m_);
   }
 
   // MCMC every `interval` steps; the growth reaches the cap half way through the appearance steps.
@@ -202,21 +194,21 @@ void describeAdvanced(Fields& f, FitSurfaceOptions& o) {
            .min = 0,
            .max = 1,
            .advanced = true},
-          o.position_rate);
+          o.rates.position);
   f.field({.name = "scale_rate",
            .label = "Learning rate, size",
            .help = "Learning rate of the logarithms of the sizes.",
            .min = 0,
            .max = 1,
            .advanced = true},
-          o.scale_rate);
+          o.rates.log_scale);
   f.field({.name = "opacity_rate",
            .label = "Learning rate, opacity",
            .help = "Learning rate of the opacities before their sigmoid (logits).",
            .min = 0,
            .max = 1,
            .advanced = true},
-          o.opacity_rate);
+          o.rates.opacity_logit);
   f.field({.name = "color_rate",
            .label = "Learning rate, colour",
            .help = "Learning rate of the colour that is the same from every side; what depends on the view "
@@ -224,7 +216,7 @@ void describeAdvanced(Fields& f, FitSurfaceOptions& o) {
            .min = 0,
            .max = 1,
            .advanced = true},
-          o.color_rate);
+          o.rates.color);
   f.field({.name = "noise",
            .label = "Exploration noise",
            .help = "Random moves that spread Gaussians to where some are missing (MCMC), as a multiple of "

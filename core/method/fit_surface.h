@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "core/method/preview.h"
 #include "core/method/view_loss.h"
+#include "core/optim/learning_rates.h"
 #include "core/scene/frame_views.h"
 
 namespace beam {
@@ -18,14 +19,11 @@ struct FitSurfaceOptions {
   double refine_fraction = 0.5;  // share of the steps that run with E_normal
   int cap = 140000;              // Gaussians (BEAM fig. 8)
   int seed = 1;
-  double seed_share = 0.4;        // seeds as a share of the cap
-  double ssim_weight = 0.2;       // lambda of eq. 8
-  double mask_weight = 0.1;       // methods 3.8
-  double filter = 1.0;            // 3D filter, relative to methods 1.3
-  double position_rate = 1.6e-4;  // learning rates: methods 1.11
-  double scale_rate = 5e-3;
-  double opacity_rate = 0.05;
-  double color_rate = 2.5e-3;
+  double seed_share = 0.4;   // seeds as a share of the cap
+  double ssim_weight = 0.2;  // lambda of eq. 8
+  double mask_weight = 0.1;  // methods 3.8
+  double filter = 1.0;       // 3D filter, relative to methods 1.3
+  ModelRates rates = kFirstFrameRates;
   double noise = 5e5;  // MCMC (methods 1.12)
   double opacity_regularizer = 0.01;
   double scale_regularizer = 0.01;

@@ -8,13 +8,11 @@
 #include "core/method/training_loop.h"
 #include "core/optim/gaussian_model.h"
 #include "core/optim/rigid_energy.h"
-#include "core/optim/schedule.h"
 
 namespace beam {
 namespace {
 
 constexpr double kReach = 1.8;  // length of their weights in mean spacings: 0.02 m of methods 3.2
-constexpr float kDecay = 0.1f;  // learning rates end at this share
 
 // The joints carry the Gaussians and learn under E_smooth, the residuals beside them where they are free.
 class FollowRule final : public TrainingRule {
@@ -45,11 +43,13 @@ class FollowRule final : public TrainingRule {
     if (options_.rest_weight > 0)
       rigidEnergy(graph_, lists_, reference_rest_, skin_, static_cast<float>(options_.rest_weight), of_skin);
     warp_.backward(joints_.pose(), of_skin, of_joints);
-    const auto decay = static_cast<float>(logLinear(1, kDecay, step.index, options_.iterations));
-    if (residual_) moveRest(of_skin, decay, step.adam, ops);
-    joints_.step(of_joints, static_cast<float>(options_.joint_rate * pixel_m_) * decay,
-                 static_cast<float>(options_.joint_rotation_rate) * decay, step.adam, ops);
-    return {rates(decay), {.temporal = static_cast<float>(options_.temporal_weight)}};
+    if (residual_) moveRest(of_skin, step, ops);
+    const PoseRates& r = options_.joint_rates;
+    const float share = shareAt(r.last, step.index, options_.iterations);
+    joints_.step(of_joints, static_cast<float>(r.position * pixel_m_) * share,
+                 static_cast<float>(r.rotation) * share, step.adam, ops);
+    return {ratesAt(options_.rates, step.index, options_.iterations, extent_m_),
+            {.temporal = static_cast<float>(options_.temporal_weight)}};
   }
 
   // Of the pose that was placed last.
@@ -61,7 +61,7 @@ class FollowRule final : public TrainingRule {
   const Pose& joints() const { return joints_.pose(); }
 
  private:
-  void moveRest(const PoseGradient& of_skin, float decay, int adam_step, TrainingOps& ops) {
+  void moveRest(const PoseGradient& of_skin, TrainingStep step, TrainingOps& ops) {
     const Pose& rest = rest_.pose();
     PoseGradient of_rest(rest.size());
     warp_.backwardToRest(joints_.pose(), of_skin, of_rest);
@@ -70,18 +70,11 @@ class FollowRule final : public TrainingRule {
       of_rest.position[i] += tie * (rest.position_m[i] - reference_rest_.position_m[i]);
       of_rest.rotation[i] += tie * toVec4(rest.rotation[i] - reference_rest_.rotation[i]);
     }
-    rest_.step(of_rest, static_cast<float>(options_.residual_rate) * extent_m_ * decay,
-               static_cast<float>(options_.residual_rotation_rate) * decay, adam_step, ops);
+    const PoseRates& r = options_.residual_rates;
+    const float share = shareAt(r.last, step.index, options_.iterations);
+    rest_.step(of_rest, static_cast<float>(r.position) * extent_m_ * share,
+               static_cast<float>(r.rotation) * share, step.adam, ops);
     warp_.setRestSkin(rest_.pose());
-  }
-
-  LearningRates rates(float decay) const {
-    return {.position_m = 0,
-            .rotation = 0,
-            .log_scale = static_cast<float>(options_.scale_rate) * decay,
-            .opacity_logit = static_cast<float>(options_.opacity_rate) * decay,
-            .color_dc = static_cast<float>(options_.color_rate) * decay,
-            .color_rest = static_cast<float>(options_.color_rate) * decay / 2};
   }
 
   const FollowSurfaceOptions& options_;
@@ -180,7 +173,7 @@ void describeAdvanced(Fields& f, FollowSurfaceOptions& o) {
        .min = 0,
        .max = 1,
        .advanced = true},
-      o.residual_rate);
+      o.residual_rates.position);
   f.field({.name = "residual_rotation_rate",
            .label = "Learning rate, own rotation",
            .help = "Learning rate of the own rotations beside the joints.",
@@ -188,7 +181,7 @@ void describeAdvanced(Fields& f, FollowSurfaceOptions& o) {
            .max = 1,
            .unit = "rad",
            .advanced = true},
-          o.residual_rotation_rate);
+          o.residual_rates.rotation);
   f.field({.name = "joint_rate",
            .label = "Learning rate, joint position",
            .help = "Learning rate of the correction of the joints' positions at the first step, in pixels; "
@@ -197,7 +190,7 @@ void describeAdvanced(Fields& f, FollowSurfaceOptions& o) {
            .max = 10,
            .unit = "px",
            .advanced = true},
-          o.joint_rate);
+          o.joint_rates.position);
   f.field(
       {.name = "joint_rotation_rate",
        .label = "Learning rate, joint rotation",
@@ -207,21 +200,21 @@ void describeAdvanced(Fields& f, FollowSurfaceOptions& o) {
        .max = 1,
        .unit = "rad",
        .advanced = true},
-      o.joint_rotation_rate);
+      o.joint_rates.rotation);
   f.field({.name = "scale_rate",
            .label = "Learning rate, size, later frames",
            .help = "Learning rate of the logarithms of the sizes in later frames.",
            .min = 0,
            .max = 1,
            .advanced = true},
-          o.scale_rate);
+          o.rates.log_scale);
   f.field({.name = "opacity_rate",
            .label = "Learning rate, opacity, later frames",
            .help = "Learning rate of the opacities before their sigmoid (logits) in later frames.",
            .min = 0,
            .max = 1,
            .advanced = true},
-          o.opacity_rate);
+          o.rates.opacity_logit);
   f.field({.name = "color_rate",
            .label = "Learning rate, colour, later frames",
            .help = "Learning rate, in later frames, of the colour that is the same from every side; what "
@@ -229,7 +222,7 @@ void describeAdvanced(Fields& f, FollowSurfaceOptions& o) {
            .min = 0,
            .max = 1,
            .advanced = true},
-          o.color_rate);
+          o.rates.color);
 }
 
 }  // namespace

@@ -13,20 +13,16 @@
 namespace beam {
 
 struct FollowSurfaceOptions {
-  int iterations = 12000;                // optimiser steps of a later frame: 7,000 + 5,000 (BEAM 3.1)
-  double refine_fraction = 5.0 / 12;     // share of them with E_normal
-  double smooth_weight = 0.001;          // lambda_smooth on the skin graph, a plain sum (methods 3.7)
-  double rest_weight = 0;                // ours: E_smooth against the skin at rest
-  double temporal_weight = 5e-5;         // lambda_temp of eq. 10, a plain sum over raw values (methods 3.7)
-  bool residual = true;                  // Gaussians may leave their joints while E_normal acts (methods 3.7)
-  double residual_weight = 1e-2;         // ties a Gaussian's residual to the frame before, a plain sum
-  double residual_rate = 1.6e-5;         // of residual positions, times the scene extent (methods 3.7)
-  double residual_rotation_rate = 1e-3;  // radians (methods 3.7)
-  double joint_rate = 0.05;              // first learning rate of the joints' correction, in pixels
-  double joint_rotation_rate = 1e-3;     // radians
-  double scale_rate = 5e-4;              // methods 3.6
-  double opacity_rate = 2.5e-3;
-  double color_rate = 2.5e-4;
+  int iterations = 12000;             // optimiser steps of a later frame: 7,000 + 5,000 (BEAM 3.1)
+  double refine_fraction = 5.0 / 12;  // share of them with E_normal
+  double smooth_weight = 0.001;       // lambda_smooth on the skin graph, a plain sum (methods 3.7)
+  double rest_weight = 0;             // ours: E_smooth against the skin at rest
+  double temporal_weight = 5e-5;      // lambda_temp of eq. 10, a plain sum over raw values (methods 3.7)
+  bool residual = true;               // Gaussians may leave their joints while E_normal acts (methods 3.7)
+  double residual_weight = 1e-2;      // ties a Gaussian's residual to the frame before, a plain sum
+  PoseRates residual_rates = kResidualRates;
+  PoseRates joint_rates = kCorrectedJointRates;
+  ModelRates rates = kLaterFrameRates;
 };
 void describe(Fields& fields, FollowSurfaceOptions& options);
 

@@ -17,18 +17,15 @@
 #include "core/optim/gaussian_model.h"
 #include "core/optim/pose_model.h"
 #include "core/optim/rigid_energy.h"
-#include "core/optim/schedule.h"
 
 namespace beam {
 namespace {
 
-constexpr int kFewestNodes = 64;       // of a coarse level
-constexpr int kSmallestSide = 4;       // of its pictures, pixels
-constexpr float kRecolorRate = 0.01f;  // of SH band 0
+constexpr int kFewestNodes = 64;  // of a coarse level
+constexpr int kSmallestSide = 4;  // of its pictures, pixels
 constexpr int kVelocityRounds = 8;
 constexpr std::uint32_t kLevelBackgrounds = 0x7acc0u;  // plus the level: stream of the random backgrounds
 constexpr int kSmoothRounds = 30;                      // a standard deviation of about four spacings
-constexpr float kLevelDecay = 0.1f;                    // learning rates of a level end at this share
 
 // Indices in the order of farthest-point sampling from the first: every beginning of it covers the points
 // evenly.
@@ -129,8 +126,7 @@ class ShadingRule final : public TrainingRule {
  public:
   explicit ShadingRule(int steps) : steps_(steps) {}
   ModelStep learn(TrainingStep step, const GaussianBuffers& /*gradients*/, TrainingOps& /*ops*/) override {
-    const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step.index, steps_));
-    return {{0, 0, 0, 0, kRecolorRate * decay, 0}, {}};
+    return {{.color_dc = ratesAt(kShadingRates, step.index, steps_, 0).color_dc}, {}};
   }
 
  private:
@@ -251,10 +247,11 @@ class JointTracker {
       rigidEnergy(graph, lists, before, pose, static_cast<float>(options_.rigid_weight) * n, of_model);
       if (options_.rest_weight > 0)
         rigidEnergy(graph, lists, rest, pose, static_cast<float>(options_.rest_weight) * n, of_model);
-      const auto decay = static_cast<float>(logLinear(1, kLevelDecay, step, steps));
-      model.step(of_model, static_cast<float>(options_.position_rate * view.pixelSize()) * decay,
-                 static_cast<float>(options_.rotation_rate) * static_cast<float>(1 << level) * decay,
-                 step + 1, view.ops());
+      const PoseRates& r = options_.rates;
+      const float share = shareAt(r.last, step, steps);
+      model.step(of_model, static_cast<float>(r.position * view.pixelSize()) * share,
+                 static_cast<float>(r.rotation) * static_cast<float>(1 << level) * share, step + 1,
+                 view.ops());
     }
     PoseGradient ignored(before.size());
     return rigidEnergy(graph, lists, before, model.pose(), 0, ignored);
@@ -398,7 +395,7 @@ static void describeAdvanced(Fields& f, TrackJointsOptions& o) {
            .max = 10,
            .unit = "px",
            .advanced = true},
-          o.position_rate);
+          o.rates.position);
   f.field(
       {.name = "rotation_rate",
        .label = "Learning rate, rotation",
@@ -407,7 +404,7 @@ static void describeAdvanced(Fields& f, TrackJointsOptions& o) {
        .max = 1,
        .unit = "rad",
        .advanced = true},
-      o.rotation_rate);
+      o.rates.rotation);
   f.field({.name = "isotropy_weight",
            .label = "Roundness",
            .help = "How strongly joints over four times longer than thick are made rounder.",

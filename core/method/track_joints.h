@@ -8,6 +8,7 @@
 #include "core/base/fields.h"
 #include "core/base/progress.h"
 #include "core/method/preview.h"
+#include "core/optim/learning_rates.h"
 #include "core/render/device.h"
 #include "core/scene/frame_views.h"
 #include "core/scene/pose.h"
@@ -24,11 +25,10 @@ struct TrackJointsOptions {
   double rigid_spacings = 1.8;   // length l of the graph's weights in mean spacings of the joints: 0.02 m for
                                  // 15,000 joints on a grown person
   double mask_weight = 0.1;      // methods 3.8
-  double position_rate = 0.05;   // first learning rate, in pixels of the level
-  double rotation_rate = 2e-3;   // radians
-  double isotropy_weight = 0.002;  // methods 3.2
-  double size_weight = 1;          // methods 3.2
-  int recolor_iterations = 0;      // ours: 0 is the paper's way, colours of the first frame for ever
+  PoseRates rates = kTrackedJointRates;  // in pixels of the level
+  double isotropy_weight = 0.002;        // methods 3.2
+  double size_weight = 1;                // methods 3.2
+  int recolor_iterations = 0;            // ours: 0 is the paper's way, colours of the first frame for ever
   int seed = 1;
 };
 void describe(Fields& fields, TrackJointsOptions& options);

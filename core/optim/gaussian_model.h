@@ -6,21 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "core/optim/learning_rates.h"
 #include "core/optim/pose_model.h"
 #include "core/render/training_ops.h"
 #include "core/scene/camera.h"
 #include "core/scene/gaussian_cloud.h"
 
 namespace beam {
-
-struct LearningRates {
-  float position_m = 1.6e-4f;  // times the scene extent (methods 1.11)
-  float rotation = 1e-3f;
-  float log_scale = 5e-3f;
-  float opacity_logit = 0.05f;
-  float color_dc = 2.5e-3f;
-  float color_rest = 1.25e-4f;
-};
 
 // Weights of MCMC's regularisers, means over Gaussians (methods 1.12), and of the shape of joints (methods
 // 3.2): isotropy mean_i max(s_max / s_min, 4), size sum_i relu(s_max - 5 m) + relu(m / 5 - s_max) in metres,

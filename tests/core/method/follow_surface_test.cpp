@@ -44,7 +44,7 @@ struct Scene {
     fit.filter = 0;
     later.iterations = 300;
     later.refine_fraction = 0.4;
-    later.color_rate = 2.5e-3;
+    later.rates.color = 2.5e-3;
     Progress progress;
     Progress a = progress.part(0.1, "seeds"), b = progress.part(0.9, "fit");
     const auto views = photographsOf(sphere, 0, vec3(0));

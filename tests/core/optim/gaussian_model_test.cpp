@@ -12,6 +12,8 @@
 namespace beam {
 namespace {
 
+const LearningRates kRates = ratesAt(kFirstFrameRates, 0, 1, 1);
+
 using L = PlaneLayout;
 
 GaussianCloud someCloud(std::size_t n) {
@@ -108,7 +110,7 @@ TEST(GaussianModel, ChainsGradientsToLogScaleAndLogitAsCentralDifferencesDo) {
   gradient.plane(L::kScale + 2)[1] = -1.3f;
   gradient.plane(L::kOpacity)[1] = 0.4f;
   RecordingOps ops;
-  m.step(gradient, {}, 3, {}, 1, ops);
+  m.step(gradient, kRates, 3, {}, 1, ops);
   const double h = 1e-3;
   for (int k = 0; k < 3; ++k) {
     GaussianCloud up = c, down = c;
@@ -149,7 +151,7 @@ TEST(GaussianModel, ShapeTermsHaveTheGradientOfTheirEnergies) {
   GaussianBuffers gradient(c.size());
   RecordingOps ops;
   model.activate();
-  model.step(gradient, {}, 3, shape, 1, ops);
+  model.step(gradient, kRates, 3, shape, 1, ops);
   const double h = 1e-3;
   for (const std::size_t i : {std::size_t{1}, std::size_t{3}, std::size_t{5}}) {
     for (int k = 0; k < 3; ++k) {
@@ -171,7 +173,7 @@ TEST(GaussianModel, TheTemporalTermHasTheGradientOfItsEnergyAndNoneAtTheReferenc
   RecordingOps ops;
   GaussianBuffers none(c.size());
   model.activate();
-  model.step(none, {}, 3, steady, 1, ops);
+  model.step(none, kRates, 3, steady, 1, ops);
   for (int p = L::kScale; p < L::kExtra; ++p) EXPECT_EQ(ops.seen.plane(p)[2], 0) << p;
   EXPECT_EQ(model.temporalEnergy(0.5f), 0);
 
@@ -182,7 +184,7 @@ TEST(GaussianModel, TheTemporalTermHasTheGradientOfItsEnergyAndNoneAtTheReferenc
   EXPECT_NEAR(model.temporalEnergy(0.5f), 0.25 * 0.25 + 0.5 * 0.5 * 0.5, 1e-5);
   GaussianBuffers gradient(c.size());
   model.activate();
-  model.step(gradient, {}, 3, steady, 2, ops);
+  model.step(gradient, kRates, 3, steady, 2, ops);
   EXPECT_NEAR(ops.seen.plane(L::kSh + 5)[2], 2 * 0.7 * 0.25, 1e-5);
   EXPECT_NEAR(ops.seen.plane(L::kScale + 1)[2], 2 * 0.7 * 0.5 * 0.5, 1e-5);
   EXPECT_EQ(ops.seen.plane(L::kSh + 5)[3], 0);
