@@ -9,48 +9,19 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/rng.h"
-#include "core/math/brdf.h"
-#include "core/math/sampling.h"
+#include "core/render/path_integrator.h"
 #include "core/sample/look.h"
 
 namespace beam {
 namespace {
 
-constexpr float kOffset_m = 3e-4f;
-constexpr float kBrightest = 20;  // of one path, against fireflies
 constexpr std::size_t kRows = 4;
 constexpr double kNear_m = 0.05;
 
-struct Hit {
-  vec3 position, normal;  // shading normal
-  float depth = 0;        // along the ray
-  FigureLook look;
-};
-
-// Uniform numbers of one path, a dimension each call.
-class PathNumbers {
- public:
-  PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples)
-      : random_(seed, pixel), sample_(sample), strata_(std::max(1, samples)) {}
-  // The first pairs are stratified along one axis by the sample's number (permuted a pixel and dimension).
-  vec2 next() {
-    const std::uint64_t d = dimension_++;
-    const std::uint64_t shift = random_.bits(1000003 + d) % strata_;
-    const float u = random_.uniform(2 * (d * 65537 + sample_)),
-                v = random_.uniform(2 * (d * 65537 + sample_) + 1);
-    const auto stratum = static_cast<float>((sample_ * (d % 2 ? 7 : 1) + shift) % strata_);
-    return {(stratum + u) / static_cast<float>(strata_), v};
-  }
-
- private:
-  RandomStream random_;
-  std::uint64_t sample_, strata_, dimension_ = 0;
-};
-
 }  // namespace
 
-struct SampleScene::State {
+// Embree's triangles with the looks of the figure.
+struct SampleScene::State final : PathSurfaces {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   RTCGeometry geometry = nullptr;
@@ -83,7 +54,7 @@ struct SampleScene::State {
     rtcAttachGeometry(scene, geometry);
     pose(surface);
   }
-  ~State() {
+  ~State() override {
     rtcReleaseGeometry(geometry);
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
@@ -130,89 +101,31 @@ struct SampleScene::State {
     return r;
   }
 
-  bool hit(vec3 o, vec3 d, Hit& out) const {
+  std::optional<PathHit> nearest(vec3 o, vec3 d) const override {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit rh{};
     rh.ray = rayOf3(o, d);
     rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &context, &rh);
-    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const auto& t = triangles[rh.hit.primID];
     const float u = rh.hit.u, v = rh.hit.v;
-    out.depth = rh.ray.tfar;
-    out.position = o + out.depth * d;
-    out.normal = glm::normalize((1 - u - v) * normals[t[0]] + u * normals[t[1]] + v * normals[t[2]]);
-    out.look = lookAt(rh.hit.primID, u, v);
-    return true;
+    const FigureLook look = lookAt(rh.hit.primID, u, v);
+    return PathHit{
+        .position_m = o + rh.ray.tfar * d,
+        .normal = glm::normalize((1 - u - v) * normals[t[0]] + u * normals[t[1]] + v * normals[t[2]]),
+        .distance_m = rh.ray.tfar,
+        .base_color = look.base_color,
+        .roughness = look.roughness};
   }
 
-  bool occluded(vec3 o, vec3 d) const {
+  bool occluded(vec3 o, vec3 d) const override {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay r = rayOf3(o, d);
     rtcOccluded1(scene, &context, &r);
     return r.tfar < 0;
-  }
-
-  // Reflectance times cosine; normals turned towards the eye.
-  static vec3 scatter(const Hit& h, vec3 n, vec3 wi, vec3 wo) {
-    const float cosine = glm::dot(n, wi);
-    if (cosine <= 0) return vec3(0);
-    const Reflectance r = reflectance(n, wi, wo, ggxAlpha(h.look.roughness));
-    return (h.look.base_color * ((1 - r.fresnel) / kPi) + vec3(r.specular)) * cosine;
-  }
-
-  // Light from the panorama at a hit: one direction by the panorama's density and one by the cosine, balance
-  // heuristic.
-  vec3 direct(const Hit& h, vec3 n, vec3 wo, const EnvironmentSampler& light, PathNumbers& numbers) const {
-    vec3 sum(0);
-    const vec3 o = h.position + kOffset_m * n;
-    const vec2 u = numbers.next(), c = numbers.next();
-    const auto add = [&](vec3 wi, vec3 radiance, float pdf_light) {
-      const float cosine = glm::dot(n, wi);
-      if (cosine <= 0 || pdf_light + cosine <= 0) return;
-      const vec3 f = scatter(h, n, wi, wo) * radiance / (pdf_light + cosine / kPi);
-      if (luminanceOf(f) > 0 && !occluded(o, wi)) sum += f;
-    };
-    const EnvironmentSampler::Sample s = light.sample(u.x, u.y);
-    add(s.direction, s.radiance, s.pdf);
-    const vec3 wi = Frame3(n).toWorld(cosineDirection(c));
-    const EnvironmentSampler::Sample seen = light.at(wi);
-    add(wi, seen.radiance, seen.pdf);
-    return sum;
-  }
-
-  static float luminanceOf(vec3 c) { return c.x + c.y + c.z; }
-
-  vec3 radiance(Hit h, vec3 wo, const EnvironmentSampler& light, int bounces, PathNumbers& numbers) const {
-    vec3 sum(0), throughput(1);
-    for (int bounce = 0;; ++bounce) {
-      const vec3 n = glm::dot(h.normal, wo) < 0 ? -h.normal : h.normal;
-      sum += throughput * direct(h, n, wo, light, numbers);
-      if (bounce == bounces) break;
-      const vec3 wi = Frame3(n).toWorld(cosineDirection(numbers.next()));
-      const float cosine = glm::dot(n, wi);
-      if (cosine <= 1e-4f) break;
-      throughput *= scatter(h, n, wi, wo) * (kPi / cosine);
-      const vec3 o = h.position + kOffset_m * n;
-      if (!hit(o, wi, h)) break;
-      wo = -wi;
-    }
-    return glm::min(sum, vec3(kBrightest));
-  }
-
-  float skyVisibility(vec3 x, vec3 n, int samples, PathNumbers numbers) const {
-    int open = 0;
-    const Frame3 frame(n);
-    const vec2 start = numbers.next();
-    const R2Sequence sequence{static_cast<std::uint32_t>(start.x * 0x1p31f),
-                              static_cast<std::uint32_t>(start.y * 0x1p31f)};
-    for (int i = 0; i < samples; ++i) {
-      open += !occluded(x + kOffset_m * n,
-                        frame.toWorld(cosineDirection(sequence(static_cast<std::uint32_t>(i)))));
-    }
-    return static_cast<float>(open) / static_cast<float>(samples);
   }
 
   struct CameraRays {
@@ -282,13 +195,15 @@ SampleScene::Picture SampleScene::photograph(const Camera& camera, const Environ
   Picture out{Image<vec3>(camera.width, camera.height, vec3(0), Encoding::Linear),
               Image<float>(camera.width, camera.height)};
   const State::CameraRays rays(camera);
+  const PanoramaLights lights(light);
+  const PathIntegrator paths(*state_, lights, {.bounces = s.bounces});
   const float share = 1.0f / static_cast<float>(s.samples);
   state_->forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int) {
     const vec3 d = rays.direction(p);
-    Hit h;
-    if (!state_->hit(rays.origin, d, h)) return;
+    const std::optional<PathHit> hit = state_->nearest(rays.origin, d);
+    if (!hit) return;
     out.coverage(x, y) += share;
-    out.radiance(x, y) += share * state_->radiance(h, -d, light, s.bounces, numbers);
+    out.radiance(x, y) += share * paths.radiance(*hit, -d, numbers);
   });
   return out;
 }
@@ -302,19 +217,19 @@ TracedMaps SampleScene::maps(const Camera& camera, const TraceSettings& s, const
   const float share = 1.0f / static_cast<float>(s.samples);
   state_->forEachSample(camera, s, progress, [&](int x, int y, dvec2 p, PathNumbers& numbers, int sample) {
     const vec3 d = rays.direction(p);
-    Hit hit;
-    if (!state_->hit(rays.origin, d, hit)) return;
-    const vec3 n = glm::dot(hit.normal, d) > 0 ? -hit.normal : hit.normal;
+    const std::optional<PathHit> hit = state_->nearest(rays.origin, d);
+    if (!hit) return;
+    const vec3 n = glm::dot(hit->normal, d) > 0 ? -hit->normal : hit->normal;
     m.coverage(x, y) += share;
-    m.base_color(x, y) += share * hit.look.base_color;
-    m.roughness(x, y) += share * hit.look.roughness;
+    m.base_color(x, y) += share * hit->base_color;
+    m.roughness(x, y) += share * hit->roughness;
     m.normal(x, y) += share * n;
-    m.depth_m(x, y) += share * hit.depth * glm::dot(d, axis);
+    m.depth_m(x, y) += share * hit->distance_m * glm::dot(d, axis);
     constexpr int kEvery = 4, kSky = 32;  // sky rays of every fourth sample
     if (sample % kEvery == 0) {
       const int used = (s.samples + kEvery - 1) / kEvery;
       m.ambient_occlusion(x, y) +=
-          state_->skyVisibility(hit.position, n, kSky, numbers) / static_cast<float>(used);
+          beam::skyVisibility(*state_, hit->position_m, n, kSky, numbers) / static_cast<float>(used);
     }
   });
   for (std::size_t i = 0; i < m.coverage.pixels.size(); ++i) {
@@ -328,7 +243,7 @@ TracedMaps SampleScene::maps(const Camera& camera, const TraceSettings& s, const
 }
 
 float SampleScene::skyVisibility(vec3 x, vec3 normal, int samples, std::uint64_t seed) const {
-  return state_->skyVisibility(x, normal, samples, PathNumbers(seed, 0, 0, 1));
+  return beam::skyVisibility(*state_, x, normal, samples, PathNumbers(seed, 0, 0, 1));
 }
 
 }  // namespace beam

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light transport along paths, over two doors: what a ray meets (PathSurfaces) and where light comes from
+// (PathLights). For whoever has surfaces with the paper's reflectance and wants a reference picture of them.
+//
+//   L(x, o) = sum over bounces k of T_k D(x_k),  T_0 = 1
+//   D(x)    = integral over the hemisphere of f(i, o) L_light(i) V(x, i) (n.i) di
+//   f       = base_color (1 - F) / pi + D G F / (4 (n.i)(n.o))       BEAM eq. 12 and 19, methods 5.4
+//
+// D by one direction of the lights' density and one of the cosine's, with the balance heuristic: both count
+// f L V (n.i) / (p_light + (n.i) / pi). T_k+1 = T_k pi f, for a direction drawn by the cosine. World axes,
+// metres; radiance in the units of the lights, scene-linear. Deterministic for the numbers of the path.
+#pragma once
+
+#include <optional>
+
+#include "core/base/rng.h"
+#include "core/math/types.h"
+#include "core/scene/environment.h"
+
+namespace beam {
+
+// What a ray meets first.
+struct PathHit {
+  vec3 position_m{0};
+  vec3 normal{0};        // of shading, unit; of either side, it is turned towards the eye
+  float distance_m = 0;  // along the ray
+  vec3 base_color{0};    // linear, [0, 1]
+  float roughness = 1;   // (0, 1]
+};
+
+class PathSurfaces {
+ public:
+  virtual ~PathSurfaces() = default;
+  // `direction`: unit.
+  virtual std::optional<PathHit> nearest(vec3 origin_m, vec3 direction) const = 0;
+  virtual bool occluded(vec3 origin_m, vec3 direction) const = 0;  // by anything, however far
+};
+
+struct LightSample {
+  vec3 direction{0};  // unit, to the light
+  vec3 radiance{0};   // >= 0
+  float pdf = 0;      // per steradian
+};
+
+class PathLights {
+ public:
+  virtual ~PathLights() = default;
+  virtual LightSample sample(vec2 u) const = 0;      // u in [0, 1)^2
+  virtual LightSample at(vec3 direction) const = 0;  // what `sample` gives where it draws `direction`
+};
+
+// A panorama as light from infinitely far; keeps a reference.
+class PanoramaLights final : public PathLights {
+ public:
+  explicit PanoramaLights(const EnvironmentSampler& sampler) : sampler_(sampler) {}
+  LightSample sample(vec2 u) const override { return of(sampler_.sample(u.x, u.y)); }
+  LightSample at(vec3 direction) const override { return of(sampler_.at(direction)); }
+
+ private:
+  static LightSample of(const EnvironmentSampler::Sample& s) { return {s.direction, s.radiance, s.pdf}; }
+  const EnvironmentSampler& sampler_;
+};
+
+// Uniform pairs in [0, 1)^2 of one path, a dimension each call. Over the `samples` of a pixel every dimension
+// is stratified along its first axis, permuted for each pixel.
+class PathNumbers {
+ public:
+  PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples);
+  vec2 next();
+
+ private:
+  RandomStream random_;
+  std::uint64_t sample_, strata_, dimension_ = 0;
+};
+
+struct PathSettings {
+  int bounces = 2;         // after the first hit; 0: light from the lights alone
+  float offset_m = 3e-4f;  // of a path's next ray along the normal, so that it leaves its surface
+  float brightest = 20;    // at most, of one path in a channel, against fireflies
+};
+
+class PathIntegrator {
+ public:
+  // Keeps references to both.
+  PathIntegrator(const PathSurfaces& surfaces, const PathLights& lights, const PathSettings& settings)
+      : surfaces_(surfaces), lights_(lights), settings_(settings) {}
+
+  // One path's estimate of what leaves `hit` towards the eye.
+  vec3 radiance(PathHit hit, vec3 to_eye, PathNumbers& numbers) const;
+
+ private:
+  vec3 direct(const PathHit& hit, vec3 normal, vec3 to_eye, PathNumbers& numbers) const;
+
+  const PathSurfaces& surfaces_;
+  const PathLights& lights_;
+  PathSettings settings_;
+};
+
+// Cosine-weighted share of the sky that a point with this normal sees, [0, 1], by `samples` rays.
+float skyVisibility(const PathSurfaces& surfaces, vec3 x_m, vec3 normal, int samples, PathNumbers numbers);
+
+}  // namespace beam
