@@ -38,11 +38,6 @@ void describe(Fields& fields, FitSurfaceOptions& options);
 float sceneExtent(std::span<const FrameView> views);
 ViewLossOptions lossOptions(const FitSurfaceOptions& options);
 
-// Seeds (methods 3.8): points on the visual hull of the masks, coloured by the views, or `seed_points` where
-// the views carry no masks. Throws Error{Data} when neither gives a point.
-PointCloud seedPoints(std::span<const FrameView> views, const PointCloud& seed_points, int count, int seed,
-                      Progress& progress);
-
 // Appearance: growth and E_color; steps [0, iterations * (1 - refine_fraction)). Deterministic for a seed.
 GaussianCloud fitAppearance(std::span<const FrameView> views, const PointCloud& seeds,
                             const FitSurfaceOptions& options, ComputeDevice& device, Progress& progress,

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/method/seed_points.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
-#include "core/method/fit_surface.h"
 #include "core/method/visual_hull.h"
 
 namespace beam {

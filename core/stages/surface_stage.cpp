@@ -9,6 +9,7 @@
 #include "core/method/fit_surface.h"
 #include "core/method/follow_surface.h"
 #include "core/method/score_views.h"
+#include "core/method/seed_points.h"
 #include "core/scene/pose.h"
 #include "core/stages/builtin_stages.h"
 #include "core/stages/carried_skin.h"

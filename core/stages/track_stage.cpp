@@ -5,7 +5,7 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/math/statistics.h"
-#include "core/method/fit_surface.h"
+#include "core/method/seed_points.h"
 #include "core/method/track_joints.h"
 #include "core/scene/pose.h"
 #include "core/stages/builtin_stages.h"

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/metrics.h"
+#include "core/method/seed_points.h"
 #include "tests/support/sphere_capture.h"
 
 namespace beam {

@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.h"
 #include "core/method/score_views.h"
+#include "core/method/seed_points.h"
 #include "core/optim/pose_model.h"
 #include "tests/support/random_pose.h"
 #include "tests/support/sphere_capture.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/method/fit_surface.h"
+#include "core/method/seed_points.h"
 #include "core/method/training_views.h"
 #include "core/method/visual_hull.h"
 #include "tests/support/sphere_capture.h"

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/method/fit_surface.h"
+#include "core/method/seed_points.h"
 #include "core/optim/pose_model.h"
 #include "tests/support/sphere_capture.h"
 
