@@ -6,8 +6,8 @@
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
 #include "core/math/color.h"
-#include "core/render/rasterizer_cache.h"
 #include "core/optim/learning_rates.h"
+#include "core/render/rasterizer_cache.h"
 
 namespace beam {
 namespace {
