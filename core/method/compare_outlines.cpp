@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/base/parallel.h"
-#include "core/method/visual_hull.h"
+#include "core/scene/visual_hull.h"
 
 namespace beam {
 namespace {

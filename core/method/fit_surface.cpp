@@ -8,8 +8,8 @@
 #include "core/base/parallel.h"
 #include "core/math/knn.h"
 #include "core/method/training_loop.h"
-#include "core/method/visual_hull.h"
 #include "core/optim/mcmc.h"
+#include "core/scene/visual_hull.h"
 
 namespace beam {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
-#include "core/method/visual_hull.h"
+#include "core/scene/visual_hull.h"
 
 namespace beam {
 namespace {

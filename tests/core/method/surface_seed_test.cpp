@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/method/seed_points.h"
 #include "core/method/training_views.h"
-#include "core/method/visual_hull.h"
+#include "core/scene/visual_hull.h"
 #include "tests/support/sphere_capture.h"
 
 namespace beam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/method/visual_hull.h"
+#include "core/scene/visual_hull.h"
 
 #include <algorithm>
 #include <cmath>
