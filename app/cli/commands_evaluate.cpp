@@ -85,7 +85,8 @@ struct Evaluated {
 };
 
 Evaluated scoreAgainstTruth(const EvaluateFlags& flags, const Project& project, CommandContext& context) {
-  const GroundTruth truth = openGroundTruth(flags.truth);
+  GroundTruth truth = openGroundTruth(flags.truth);
+  truth.unit_m = inverse(project.capture().capture_from_world).scale;
   Progress progress(context.stop, context.console.listener());
   Evaluated e;
   if (!flags.pictures.empty()) {

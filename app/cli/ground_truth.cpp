@@ -15,6 +15,7 @@
 #include "core/io/mesh_ply.h"
 #include "core/math/color.h"
 #include "core/method/evaluate.h"
+#include "core/scene/transform.h"
 
 namespace beam {
 namespace {
@@ -82,6 +83,16 @@ Planes encoded(Planes p, const dvec3& scale = dvec3(1)) {
 Planes clipped(Planes p) {
   for (float& v : p.values) v = std::clamp(v, 0.0f, 1.0f);
   return p;
+}
+
+Planes inMetres(Planes lengths, const GroundTruth& t) {
+  if (t.unit_m == 1) return lengths;
+  for (float& v : lengths.values) v = static_cast<float>(t.unit_m * v);
+  return lengths;
+}
+
+Mesh inMetres(const Mesh& mesh, const GroundTruth& t) {
+  return t.unit_m == 1 ? mesh : transformed(mesh, {dmat3(1.0), t.unit_m});
 }
 
 struct Triple {
@@ -166,7 +177,7 @@ void scoreMeshes(const GroundTruth& t, const fs::path& pictures, ScoreTable& out
   for (const std::string& frame : t.gt_frames) {
     const fs::path p = pictures / "mesh" / (frame + ".ply"), g = t.folder / "gt/mesh" / (frame + ".ply");
     if (!fs::exists(p) || !fs::exists(g)) continue;
-    const Chamfer c = chamferDistance(readMeshPly(p), readMeshPly(g));
+    const Chamfer c = chamferDistance(inMetres(readMeshPly(p), t), inMetres(readMeshPly(g), t));
     sum["chamfer_mm"] += c.chamfer_mm;
     sum["pred_to_gt_mm"] += c.prediction_to_truth_mm;
     sum["gt_to_pred_mm"] += c.truth_to_prediction_mm;
@@ -243,7 +254,7 @@ ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progres
   if (const std::vector<Triple> triples = load(t, pictures, "depth", asValue); !triples.empty()) {
     Scores s{{"mae_mm", 0}, {"pictures", static_cast<double>(triples.size())}};
     for (const Triple& d : triples) {
-      const double error = depthErrorMm(d.prediction, d.truth, d.mask);
+      const double error = depthErrorMm(inMetres(d.prediction, t), inMetres(d.truth, t), d.mask);
       each[d.frame][d.camera]["depth.mae_mm"] = error;
       s["mae_mm"] += error / s["pictures"];
     }

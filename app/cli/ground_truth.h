@@ -18,6 +18,7 @@ using ScoreTable = std::vector<std::pair<std::string, Scores>>;  // by map, in t
 struct GroundTruth {
   std::filesystem::path folder;  // the data set's; gt/ lies inside
   std::vector<std::string> test_cameras, frames, gt_frames, environments;
+  double unit_m = 1;  // metres a unit of its depth and meshes, and of those that are compared to them
 };
 // Throws Error{Data} when the folder has no dataset.json or no gt/.
 GroundTruth openGroundTruth(const std::filesystem::path& folder);

@@ -13,6 +13,7 @@
 #include "core/io/capture_description.h"
 #include "core/io/capture_pictures.h"
 #include "core/io/mesh_ply.h"
+#include "core/scene/transform.h"
 
 namespace beam {
 namespace {
@@ -205,14 +206,9 @@ ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxi
   set.frames_per_second = d.frames_per_second;
   set.up = up;
   set.frames = framesOf(d);
-  const dmat3 world_from_capture = worldFromCapture(up);
-  const dquat capture_from_world = glm::conjugate(glm::normalize(glm::quat_cast(world_from_capture)));
   PictureTable files;
   for (const DescribedCamera& c : d.cameras) {
-    Camera camera = c.camera;
-    camera.camera_from_world.rotation =
-        glm::normalize(c.camera.camera_from_world.rotation * capture_from_world);
-    set.views.push_back({c.name, camera, c.split});
+    set.views.push_back({c.name, c.camera, c.split});
     files.push_back(filesOf(c, set.frames, folder));
   }
   const MaskKind kind = maskKindOf(files);
@@ -220,11 +216,11 @@ ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxi
   warnOfGaps(d, files, set.frames, kind);
   set.masks = kind;
   set.seed_points = pointsOf(d, folder, d.warnings);
-  for (vec3& p : set.seed_points.position_m) p = vec3(world_from_capture * dvec3(p));
   for (const char* name : {"environment.exr", "environment.hdr"}) {
     if (!set.environment_file && fs::exists(folder / name)) set.environment_file = (folder / name).string();
   }
   set.source = makeFileFrames(std::move(files), set.views, kind);
+  set = transformed(std::move(set), {worldFromCapture(up)});
   out.warnings = std::move(d.warnings);
   return out;
 }

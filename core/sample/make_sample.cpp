@@ -20,6 +20,7 @@
 #include "core/sample/skin.h"
 #include "core/sample/tracks.h"
 #include "core/scene/capture.h"
+#include "core/scene/transform.h"
 
 namespace beam {
 namespace {
@@ -69,13 +70,6 @@ std::vector<SampleCamera> rig(const SampleOptions& o) {
         kRings[i % 2] * 0.6 + 0.15);
   }
   return cameras;
-}
-
-// The camera as the house sees it.
-Camera inWorld(Camera c, const dmat3& world_from_capture) {
-  const dquat turn = glm::conjugate(glm::normalize(glm::quat_cast(world_from_capture)));
-  c.camera_from_world.rotation = glm::normalize(c.camera_from_world.rotation * turn);
-  return c;
 }
 
 Image<u8vec3> encoded(const Image<vec3>& linear) {
@@ -166,7 +160,7 @@ class SampleWriter {
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       const SampleCamera& camera = cameras_[c];
       if (const std::vector<int> shown = defects_.shownIn(camera.name, frame); !shown.empty()) {
-        const SampleScene::Picture p = scene.photograph(inWorld(camera.camera, world_from_capture_),
+        const SampleScene::Picture p = scene.photograph(transformed(camera.camera, {world_from_capture_}),
                                                         dome_sampler_, settings(frame, c, 0, 1), progress);
         for (const int f : shown) keep(camera, f, p);
       }
@@ -190,7 +184,7 @@ class SampleWriter {
     writeMeshPly(folder_ / "gt/mesh" / (frameName(frame) + ".ply"), mesh);
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       if (!cameras_[c].test) continue;
-      const Camera camera = inWorld(cameras_[c].camera, world_from_capture_);
+      const Camera camera = transformed(cameras_[c].camera, {world_from_capture_});
       const fs::path file = fs::path(cameras_[c].name) / (frameName(frame) + ".exr");
       const TracedMaps m = scene.maps(camera, settings(frame, c, 1, kTruthSamples), progress);
       writeExr(in(fs::path("gt/base_color") / file), planesOf(m.base_color, dmat3(1.0)), {"R", "G", "B"},

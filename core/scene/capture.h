@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/math/similarity3.h"
 #include "core/scene/camera.h"
 #include "core/scene/ids.h"
 
@@ -62,6 +63,7 @@ struct CaptureSet {
   PointCloud seed_points;                       // in world axes; may be empty
   std::optional<std::string> environment_file;  // path of the capture's panorama
   UpAxis up = UpAxis::PlusY;                    // of the capture's own axes
+  Similarity3 capture_from_world;               // back to the capture's own axes, unit and origin
   std::shared_ptr<const FrameSource> source;
 };
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/transform.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/math/sh_rotation.h"
@@ -67,6 +69,31 @@ Mesh transformed(const Mesh& mesh, const Similarity3& a_from_b) {
   Mesh out = mesh;
   for (vec3& v : out.vertices) v = vec3(a_from_b * dvec3(v));
   return out;
+}
+
+Camera transformed(const Camera& camera, const Similarity3& a_from_b) {
+  requireSimilarity(a_from_b);
+  Camera out = camera;
+  Rigid3& pose = out.camera_from_world;
+  const dquat b_from_a = glm::conjugate(glm::normalize(glm::quat_cast(a_from_b.rotation)));
+  pose.rotation = glm::normalize(pose.rotation * b_from_a);
+  if (!isTurn(a_from_b))
+    pose.translation_m = a_from_b.scale * pose.translation_m - pose.rotation * a_from_b.translation;
+  return out;
+}
+
+PointCloud transformed(const PointCloud& points, const Similarity3& a_from_b) {
+  requireSimilarity(a_from_b);
+  PointCloud out = points;
+  for (vec3& p : out.position_m) p = vec3(a_from_b * dvec3(p));
+  return out;
+}
+
+CaptureSet transformed(CaptureSet capture, const Similarity3& a_from_b) {
+  for (View& view : capture.views) view.camera = transformed(view.camera, a_from_b);
+  capture.seed_points = transformed(capture.seed_points, a_from_b);
+  capture.capture_from_world = capture.capture_from_world * inverse(a_from_b);
+  return capture;
 }
 
 }  // namespace beam

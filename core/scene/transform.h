@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/math/similarity3.h"
+#include "core/scene/capture.h"
 #include "core/scene/gaussian_cloud.h"
 #include "core/scene/gaussian_sequence.h"
 #include "core/scene/mesh.h"
@@ -15,5 +16,10 @@ GaussianCloud transformed(const GaussianCloud& cloud, const Similarity3& a_from_
 Materials transformed(const Materials& materials, const Similarity3& a_from_b);
 Attribute transformed(const Attribute& attribute, const Similarity3& a_from_b);
 Mesh transformed(const Mesh& mesh, const Similarity3& a_from_b);
+// Takes the same picture of what went with it: camera axes keep their directions, depth is in a's unit.
+Camera transformed(const Camera& camera, const Similarity3& a_from_b);
+PointCloud transformed(const PointCloud& points, const Similarity3& a_from_b);
+// Its capture_from_world goes back all the way.
+CaptureSet transformed(CaptureSet capture, const Similarity3& a_from_b);
 
 }  // namespace beam

@@ -64,7 +64,7 @@ class ProjectSequence final : public GaussianSequence {
         survey_(std::move(survey)),
         labels_(labelled(project.capture().frames)),
         rate_(project.capture().frames_per_second),
-        capture_from_world_{glm::transpose(worldFromCapture(project.capture().up))} {
+        capture_from_world_(project.capture().capture_from_world) {
     for (const StageInfo& stage : project.setup().stages.infos()) {
       for (const StepInfo& step : stage.steps) steps_.insert(stage.id + "." + step.id);
     }

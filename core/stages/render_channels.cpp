@@ -29,6 +29,13 @@ Image<u8vec3> bytesOf(const Image<vec3>& image, bool encode) {
   return out;
 }
 
+// A turn leaves lengths as they are.
+Planes inUnit(Planes lengths_m, const Similarity3& frame_from_world) {
+  if (frame_from_world.scale == 1) return lengths_m;
+  for (float& v : lengths_m.values) v = static_cast<float>(frame_from_world.scale * v);
+  return lengths_m;
+}
+
 bool needsMaterials(const std::string& channel) {
   return channel == "relight" || channel == "base_color" || channel == "ao" || channel == "roughness";
 }
@@ -104,7 +111,10 @@ class ChannelWriter {
       writeExr(file("normal", camera, exr), planesOf(g.normal_world, frame_from_world_.rotation),
                {"R", "G", "B"}, ExrPrecision::Half);
     }
-    if (wants("depth")) writeExr(file("depth", camera, exr), planesOf(g.depth_m), {"Y"}, ExrPrecision::Float);
+    if (wants("depth")) {
+      writeExr(file("depth", camera, exr), inUnit(planesOf(g.depth_m), frame_from_world_), {"Y"},
+               ExrPrecision::Float);
+    }
     if (wants("alpha")) {
       Image<std::uint8_t> alpha(g.alpha.width, g.alpha.height);
       for (std::size_t i = 0; i < alpha.pixels.size(); ++i) alpha.pixels[i] = byteOf(g.alpha.pixels[i]);

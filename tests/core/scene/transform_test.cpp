@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/base/error.h"
 #include "core/base/rng.h"
 #include "core/scene/capture.h"
 #include "core/scene/transform.h"
+#include "tests/support/sphere_capture.h"
 
 namespace beam {
 namespace {
@@ -102,6 +105,70 @@ TEST(Transformed, APlainAttributeStaysAndOneOfDirectionsTurns) {
   double norm = 0;
   for (const float v : turned.values) norm += double(v) * v;
   EXPECT_NEAR(norm, 1, 1e-5) << "a turn keeps the power of a band";
+}
+
+CaptureSet someCapture() {
+  CaptureSet set;
+  for (int i = 0; i < 3; ++i) {
+    set.views.push_back({"cam", testing::cameraLookingAt({3.0 * i - 3, 1.5, 2}, {0, 1, 0}, 64, 80)});
+    set.seed_points.position_m.push_back(randomVec(static_cast<std::uint64_t>(i)));
+  }
+  return set;
+}
+
+TEST(Transformed, ACameraTakesTheSamePictureOfWhatWentWithItInTheOtherUnit) {
+  const Similarity3 s = someSimilarity();
+  for (const View& view : someCapture().views) {
+    const Camera after = transformed(view.camera, s);
+    EXPECT_LT(glm::length(centerOf(after) - s * centerOf(view.camera)), 1e-11);
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      const dvec3 x(0.3f * randomVec(i));
+      const dvec3 was = view.camera.camera_from_world * x, is = after.camera_from_world * (s * x);
+      EXPECT_NEAR(is.z, s.scale * was.z, 1e-11);
+      EXPECT_LT(glm::length(project(after.intrinsics, is) - project(view.camera.intrinsics, was)), 1e-7);
+    }
+  }
+}
+
+TEST(Transformed, ACaptureGoesThereAndBackOnItsOwnSimilarity) {
+  const CaptureSet before = someCapture();
+  const CaptureSet world = transformed(before, someSimilarity());
+  const CaptureSet back = transformed(world, world.capture_from_world);
+  for (std::size_t i = 0; i < before.views.size(); ++i) {
+    const Rigid3 &was = before.views[i].camera.camera_from_world,
+                 &is = back.views[i].camera.camera_from_world;
+    EXPECT_NEAR(std::abs(glm::dot(was.rotation, is.rotation)), 1, 1e-12);
+    EXPECT_LT(relativeError(is.translation_m, was.translation_m), 1e-10);
+  }
+  EXPECT_LT(std::abs(back.capture_from_world.scale - 1), 1e-12);
+  EXPECT_LT(glm::length(back.capture_from_world.translation), 1e-10);
+}
+
+TEST(Transformed, WhatIsTurnedBackIsThereToTwoUnitsInTheLastPlace) {
+  // The last place of a coordinate is that of the longest on its way: an origin far off takes the others'.
+  const Similarity3 scaled{worldFromCapture(UpAxis::PlusZ), 0.001, dvec3(0)};
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Mesh world{{randomVec(i)}, {}};
+    const Mesh back = transformed(transformed(world, inverse(scaled)), scaled);
+    for (int k = 0; k < 3; ++k) {
+      const float was = world.vertices[0][k], place = std::abs(std::nextafter(was, 2 * was) - was);
+      EXPECT_LE(std::abs(back.vertices[0][k] - was), 2 * place);
+    }
+  }
+}
+
+TEST(Transformed, ATurnedCaptureGoesBackBitForBit) {
+  for (const UpAxis up : {UpAxis::PlusY, UpAxis::PlusZ, UpAxis::MinusY}) {
+    const CaptureSet before = someCapture(), world = transformed(before, {worldFromCapture(up)});
+    EXPECT_EQ(world.capture_from_world, Similarity3{glm::transpose(worldFromCapture(up))});
+    for (std::size_t i = 0; i < before.views.size(); ++i) {
+      EXPECT_EQ(world.views[i].camera.camera_from_world.translation_m,
+                before.views[i].camera.camera_from_world.translation_m)
+          << "a camera's own axes do not turn";
+    }
+    EXPECT_EQ(transformed(world.seed_points, world.capture_from_world).position_m,
+              before.seed_points.position_m);
+  }
 }
 
 TEST(Transformed, RefusesMirrorsAndScalesThatAreNoSizes) {
