@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/visual_hull.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/statistics.h"
+#include "core/scene/rig_focus.h"
 
 namespace beam {
 namespace {
@@ -26,6 +30,18 @@ std::vector<std::uint32_t> integralOf(const Image<std::uint8_t>& mask) {
     }
   }
   return sums;
+}
+
+// A person has some hundred thousand cells on the surface; the memory of a level goes with their number.
+void requireFew(std::size_t cells, double half, float cell_m) {
+  constexpr std::size_t kMost = 4'000'000;
+  if (cells <= kMost) return;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("the visual hull of the masks: expected a surface of at most {} cells of {} m, found "
+                  "more already at {:.3g} m; the capture is in another unit than the metre: name it "
+                  "with --unit (m, cm, mm or metres a unit)",
+                  kMost, cell_m, 2 * half));
 }
 
 }  // namespace
@@ -143,10 +159,10 @@ int VisualHull::halvings(const dvec3& center, double half, double share) const {
 VisualHull::Cells VisualHull::cellsDeniedBy(int most_denials, double share, const Progress& progress) const {
   Cells found;
   if (views_.empty()) return found;
-  dvec3 origin;
-  boundingCube(origin, found.half_m);
-  found.cells.push_back({origin});
-  for (int level = halvings(origin, found.half_m, share); level > 0; --level) {
+  const Cube cube = boundingCube();
+  found.half_m = cube.half_m;
+  found.cells.push_back({cube.center});
+  for (int level = halvings(cube.center, found.half_m, share); level > 0; --level) {
     const double half = found.half_m /= 2;
     std::vector<std::vector<Cell>> children(found.cells.size());
     parallelFor(found.cells.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -188,33 +204,23 @@ VisualHull::Cover VisualHull::classify(const dvec3& center, double half) const {
   return inside ? Cover::Inside : Cover::Mixed;
 }
 
-// The point nearest to all optical axes, and a cube around it that reaches half way to the nearest camera's
-// distance.
-void VisualHull::boundingCube(dvec3& center, double& half) const {
-  dmat3 a(0.0);
-  dvec3 b(0.0);
-  std::vector<dvec3> positions;
-  for (const MaskView& v : views_) {
-    const dvec3 axis(v.rotation[0][2], v.rotation[1][2], v.rotation[2][2]);
-    const dvec3 position = -(glm::transpose(v.rotation) * v.translation);
-    const dmat3 off = dmat3(1.0) - glm::outerProduct(axis, axis);
-    a += off;
-    b += off * position;
-    positions.push_back(position);
-  }
-  a += dmat3(1e-9);
-  center = glm::inverse(a) * b;
+VisualHull::Cube VisualHull::boundingCube() const {
+  AxesPoint axes;
+  for (const MaskView& v : views_) axes.add(v.rotation, v.translation);
+  const dvec3 center = axes.point();
   double nearest = 1e9;
-  for (const dvec3& p : positions) nearest = std::min(nearest, glm::length(p - center));
-  half = nearest * 0.75;
+  for (const MaskView& v : views_) {
+    const dvec3 position = -(glm::transpose(v.rotation) * v.translation);
+    nearest = std::min(nearest, glm::length(position - center));
+  }
+  return {center, nearest * 0.75};
 }
 
 std::vector<vec3> VisualHull::surfaceCells(float cell_m, const Progress& progress) const {
   if (views_.empty()) return {};
-  dvec3 origin;
-  double half = 0;
-  boundingCube(origin, half);
-  std::vector<dvec3> cells = {origin};
+  const Cube cube = boundingCube();
+  double half = cube.half_m;
+  std::vector<dvec3> cells = {cube.center};
   while (half > cell_m / 2 && !cells.empty()) {
     half /= 2;
     std::vector<std::vector<dvec3>> children(cells.size());
@@ -231,6 +237,7 @@ std::vector<vec3> VisualHull::surfaceCells(float cell_m, const Progress& progres
     for (const std::vector<dvec3>& c : children) next.insert(next.end(), c.begin(), c.end());
     cells = std::move(next);
     progress.check();
+    requireFew(cells.size(), half, cell_m);
   }
   // Of the mixed leaves the surface passes through those whose corners disagree.
   std::vector<std::uint8_t> crossed(cells.size(), 0);

@@ -27,7 +27,8 @@ class VisualHull {
   bool contains(vec3 x_in_world) const;
 
   // Centres of the cells of about `cell_m` that the hull's surface passes through, in a fixed order. Empty
-  // when no view has a mask or the hull is empty.
+  // when no view has a mask or the hull is empty. Throws Error{Data} for a subject that is too large for the
+  // cells, which one in another unit than the metre is.
   std::vector<vec3> surfaceCells(float cell_m, const Progress& progress) const;
 
   // A view denies a cell that it sees inside its picture with no pixel of its mask on it.
@@ -45,6 +46,13 @@ class VisualHull {
   // The cells that two views see and at most `most_denials` (to kMostDenials) deny, in a fixed order; about
   // `share` of the subject's size, by the median view's mask, and not below a pixel.
   Cells cellsDeniedBy(int most_denials, double share, const Progress& progress) const;
+
+  // Around the point nearest to all optical axes, half way and more to the nearest camera: what is carved.
+  struct Cube {
+    dvec3 center;
+    double half_m;
+  };
+  Cube boundingCube() const;
 
   // Half-open, inside the picture.
   struct PixelBox {
@@ -75,7 +83,6 @@ class VisualHull {
   int halvings(const dvec3& center, double half, double share) const;
   std::optional<Cell> votedCell(const dvec3& center, double half, int most_denials) const;
   Cover classify(const dvec3& center, double half) const;
-  void boundingCube(dvec3& center, double& half) const;
 
   std::vector<MaskView> views_;
 };
