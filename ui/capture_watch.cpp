@@ -35,6 +35,7 @@ void CaptureWatch::checkWhenFree() {
         ImportOptions options;
         options.up = project.document().up;
         options.hold_out = project.document().hold_out;
+        options.placement = project.imported().placement;
         for (const std::string& warning : check(project.captureFolder(), options, progress))
           found->append(QString::fromStdString(warning));
         found->removeDuplicates();

@@ -214,6 +214,11 @@ void ProjectPanel::refreshFacts() {
                .arg(countText(static_cast<std::int64_t>(capture.views.size()), "camera"),
                     countText(model_.frameCount(), "frame"),
                     capture.masks != MaskKind::None ? "masks" : "no masks");
+  if (!isTurn(capture.capture_from_world)) {
+    QString placed = QString::fromStdString(toText(project.imported().placement));
+    placed[0] = placed[0].toUpper();
+    lines << placed;
+  }
   if (const FrameValues& values = model_.values(); values.cloud) {
     lines << countText(static_cast<std::int64_t>(values.cloud->size()), "Gaussian") +
                  (values.materials ? " with materials" : ", no materials yet");

@@ -85,6 +85,15 @@ SplatCheck checkSplats(const fs::path& path) {
 std::string textOf(vec3 v) { return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z); }
 nlohmann::ordered_json jsonOf(vec3 v) { return {v.x, v.y, v.z}; }
 
+nlohmann::ordered_json jsonOf(const CapturePlacement& p) {
+  nlohmann::ordered_json j = {{"unit_m", p.unit_m},
+                              {"from", toText(p.from)},
+                              {"origin", {p.origin.x, p.origin.y, p.origin.z}},
+                              {"text", toText(p)}};
+  if (p.height > 0) j["height"] = p.height;
+  return j;
+}
+
 }  // namespace
 
 CheckReport checkDescription(const fs::path& path, const ImportedCapture& capture) {
@@ -93,6 +102,7 @@ CheckReport checkDescription(const fs::path& path, const ImportedCapture& captur
   r.kind = "capture";
   r.layout = capture.layout;
   r.up = toText(capture.set.up);
+  r.placement = capture.placement;
   r.frames = capture.set.frames;
   r.warnings = capture.warnings;
   r.seed_points = capture.set.seed_points.position_m.size();
@@ -153,9 +163,10 @@ CheckReport checkPath(const fs::path& path, const ImportOptions& options, Progre
 std::string toText(const CheckReport& r) {
   std::string t = fmt::format("{}: {}\n", r.kind, r.path);
   if (r.kind == "capture") {
-    t += fmt::format("layout: {}\nup axis: {}\nframes: {} ({} to {})\nseed points: {}\ncameras: {}\n",
-                     r.layout, r.up, r.frames.size(), r.frames.empty() ? "-" : r.frames.front(),
-                     r.frames.empty() ? "-" : r.frames.back(), r.seed_points, r.cameras.size());
+    t += fmt::format(
+        "layout: {}\nup axis: {}\nunit: {}\nframes: {} ({} to {})\nseed points: {}\ncameras: {}\n", r.layout,
+        r.up, toText(r.placement), r.frames.size(), r.frames.empty() ? "-" : r.frames.front(),
+        r.frames.empty() ? "-" : r.frames.back(), r.seed_points, r.cameras.size());
     for (const CameraCheck& c : r.cameras) {
       t += fmt::format("  {:<10} {} x {}  fx {:.1f} fy {:.1f} cx {:.1f} cy {:.1f}  frames {}  mask {}{}\n",
                        c.name, c.width, c.height, c.intrinsics.fx, c.intrinsics.fy, c.intrinsics.cx,
@@ -185,6 +196,7 @@ std::string toJson(const CheckReport& r) {
   if (r.kind == "capture") {
     j["layout"] = r.layout;
     j["up"] = r.up;
+    j["unit"] = jsonOf(r.placement);
     j["frames"] = r.frames;
     j["seed_points"] = r.seed_points;
     j["cameras"] = nlohmann::ordered_json::array();

@@ -35,6 +35,7 @@ struct SplatCheck {
 struct CheckReport {
   std::string path, kind;  // kind: "capture", "panorama", "splats"
   std::string layout, up;
+  CapturePlacement placement;
   std::vector<std::string> frames;
   std::vector<CameraCheck> cameras;
   std::size_t seed_points = 0;

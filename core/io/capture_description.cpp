@@ -7,11 +7,13 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/rig_focus.h"
 
 namespace beam {
 namespace {
 
-constexpr double kStill_m = 1e-3;      // COLMAP and transforms.json carry no unit: metres by convention
+constexpr double kStill = 4e-4;    // of the distance to the subject; COLMAP and transforms.json have no unit
+constexpr double kDistance_m = 3;  // where the cameras do not tell it
 constexpr double kStill_rad = 2e-3;    // about a pixel at the border of a 1000-pixel picture
 constexpr double kOrthonormal = 1e-3;  // what rounding to four digits leaves
 
@@ -53,15 +55,15 @@ dquat rotationFromMatrix(const dmat3& m, const std::string& where) {
   return glm::normalize(glm::quat_cast(m));
 }
 
-void requireStill(const DescribedCamera& known, const Camera& again, const std::string& where) {
-  const double moved_m = glm::length(centerOf(known.camera) - centerOf(again));
+void addPose(DescribedCamera& known, const Camera& again, const std::string& where) {
+  known.moved = std::max(known.moved, glm::length(centerOf(known.camera) - centerOf(again)));
   const dquat &p = known.camera.camera_from_world.rotation, &q = again.camera_from_world.rotation;
   const double turned_rad = 2 * std::acos(std::min(1.0, std::abs(glm::dot(p, q))));
-  if (moved_m > kStill_m || turned_rad > kStill_rad) {
+  if (turned_rad > kStill_rad) {
     bad(where,
-        fmt::format("camera \"{}\" moves between its pictures by {:.4f} m and {:.4f} rad; expected cameras "
-                    "that stand still",
-                    known.name, moved_m, turned_rad));
+        fmt::format("camera \"{}\" turns between its pictures by {:.4f} rad; expected cameras that stand "
+                    "still",
+                    known.name, turned_rad));
   }
   if (known.camera.width != again.width || known.camera.height != again.height ||
       std::abs(known.camera.intrinsics.fx - again.intrinsics.fx) > 1e-3 * again.intrinsics.fx) {
@@ -69,6 +71,20 @@ void requireStill(const DescribedCamera& known, const Camera& again, const std::
         fmt::format("camera \"{}\" changes its size or focal length between its pictures; expected one "
                     "calibration a camera",
                     known.name));
+  }
+}
+
+void requireStill(const CaptureDescription& description, const std::string& where) {
+  std::vector<Camera> cameras;
+  for (const DescribedCamera& c : description.cameras) cameras.push_back(c.camera);
+  const std::optional<RigFocus> focus = focusOf(cameras);
+  const double most = kStill * (focus ? focus->distance_m : kDistance_m);
+  for (const DescribedCamera& c : description.cameras) {
+    if (c.moved <= most) continue;
+    bad(where,
+        fmt::format("camera \"{}\" moves between its pictures by {:.4g} units; expected cameras that stand "
+                    "still, to {:.2g} units",
+                    c.name, c.moved, most));
   }
 }
 

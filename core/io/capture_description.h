@@ -19,6 +19,7 @@ struct DescribedCamera {
   Split split = Split::Train;
   std::map<std::string, std::filesystem::path> pictures;  // by frame name
   std::map<std::string, std::filesystem::path> masks;     // as the description names them; may be empty
+  double moved = 0;  // farthest that another of its pictures was taken from there, in the capture's unit
 };
 
 struct CaptureDescription {
@@ -26,6 +27,7 @@ struct CaptureDescription {
   std::string name;
   double frames_per_second = 30;
   std::optional<UpAxis> up;
+  std::optional<double> unit_m;  // metres a unit, where the description names it
   std::vector<DescribedCamera> cameras;
   std::filesystem::path points_file;  // seed points named by the description; may be empty
   PointCloud points;                  // capture axes; may be empty
@@ -44,8 +46,12 @@ bool isPicture(const std::filesystem::path& file);
 // A rotation matrix given in a file: throws Error{Data} unless it is orthonormal to 1e-3.
 dquat rotationFromMatrix(const dmat3& matrix, const std::string& where);
 
-// For descriptions with one pose a picture: throws Error{Data} when a camera moves or changes its lens.
-void requireStill(const DescribedCamera& known, const Camera& again, const std::string& where);
+// For descriptions with one pose a picture: notes how far the camera moved, throws Error{Data} when it turns
+// or changes its lens.
+void addPose(DescribedCamera& known, const Camera& again, const std::string& where);
+// Throws Error{Data} when a camera moved by more than its share of the distance to what the cameras look at,
+// which is the same in every unit.
+void requireStill(const CaptureDescription& description, const std::string& where);
 
 // Names become paths, here and in what is written: throws Error{Data} for those that leave their folder.
 void requirePlainName(const std::string& name, const std::string& where);

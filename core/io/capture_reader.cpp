@@ -198,7 +198,35 @@ void warnOfGaps(CaptureDescription& d, const PictureTable& files, const std::vec
   }
 }
 
-ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxis up) {
+// What the seed points say of their unit, against the masks.
+void warnOfSeeds(const SubjectMeasure& subject, std::size_t count, const fs::path& folder,
+                 std::vector<std::string>& warnings) {
+  constexpr double kNone = 0.02;  // points of the room around the subject are no mistake
+  if (!subject.seeds) return;
+  const SeedFit& fit = *subject.seeds;
+  if (fit.factor != 1) {
+    warnings.push_back(
+        fmt::format("\"{}\": expected {} seed points in the unit of the cameras; found that they fit the "
+                    "masks only after a factor of {:.4g}: scale them or leave them out",
+                    folder.string(), count, fit.factor));
+  } else if (fit.share < kNone) {
+    warnings.push_back(
+        fmt::format("\"{}\": expected seed points inside the masks, found {:.0f} % of {} there: the "
+                    "points and the cameras differ in place, axes or unit",
+                    folder.string(), 100 * fit.share, count));
+  }
+}
+
+// Where a turned capture lies, as it is found when a project is made.
+CapturePlacement foundPlacement(const CaptureSet& turned, const UnitHints& hints, const fs::path& folder,
+                                std::vector<std::string>& warnings) {
+  const SubjectMeasure subject = measureSubject(turned);
+  warnOfSeeds(subject, turned.seed_points.position_m.size(), folder, warnings);
+  return placementOf(subject, hints, turned.up);
+}
+
+ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxis up,
+                             const ImportOptions& options) {
   ImportedCapture out;
   CaptureSet& set = out.set;
   out.layout = d.layout;
@@ -220,7 +248,13 @@ ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxi
     if (!set.environment_file && fs::exists(folder / name)) set.environment_file = (folder / name).string();
   }
   set.source = makeFileFrames(std::move(files), set.views, kind);
-  set = transformed(std::move(set), {worldFromCapture(up)});
+  // The turn first: up is up wherever a subject is measured.
+  CaptureSet turned = transformed(set, {worldFromCapture(up)});
+  out.placement = options.placement ? *options.placement
+                                    : foundPlacement(turned, {options.unit_m, d.unit_m}, folder, d.warnings);
+  const Similarity3 world_from_capture = worldFromCapture(up, out.placement);
+  set = isTurn(world_from_capture) ? std::move(turned) : transformed(std::move(set), world_from_capture);
+  for (std::string& doubt : doubtsOf(out.placement, folder.string())) d.warnings.push_back(std::move(doubt));
   out.warnings = std::move(d.warnings);
   return out;
 }
@@ -238,6 +272,7 @@ ImportedCapture open(const fs::path& folder, const ImportOptions& options) {
       throw Error(Error::Kind::Data, fmt::format("\"{}\", {}: {}", folder.string(), d.layout, e.what()));
     }
   }
+  requireStill(d, fmt::format("\"{}\", {}", folder.string(), d.layout));
   dropEmptyCameras(d, folder);
   const std::optional<UpAxis> up = options.up ? options.up : d.up ? d.up : upFromCameras(d);
   if (!up) {
@@ -246,7 +281,7 @@ ImportedCapture open(const fs::path& folder, const ImportOptions& options) {
                             "+Y, +Z or -Y); say it with --up",
                             folder.string()));
   }
-  return importedFrom(std::move(d), folder, *up);
+  return importedFrom(std::move(d), folder, *up, options);
 }
 
 }  // namespace

@@ -308,7 +308,7 @@ void addPictures(CaptureDescription& d, const ColmapModel& m, const std::filesys
     const auto [place, fresh] = index.emplace(name, d.cameras.size());
     if (fresh) d.cameras.push_back({name, camera, Split::Train, {}, {}});
     DescribedCamera& described = d.cameras[place->second];
-    requireStill(described, camera, fmt::format("\"{}\"", model_folder.string()));
+    addPose(described, camera, fmt::format("\"{}\"", model_folder.string()));
     described.pictures.insert(found.begin(), found.end());
   }
 }

@@ -4,6 +4,7 @@
 
 #include "core/io/capture_description.h"
 #include "core/io/json_reader.h"
+#include "core/scene/capture_placement.h"
 
 namespace beam {
 namespace {
@@ -58,6 +59,20 @@ std::optional<UpAxis> upOf(const nlohmann::json& j) {
   return std::nullopt;
 }
 
+// world.unit, a word or metres a unit.
+void readUnit(const nlohmann::json& j, const std::filesystem::path& file, CaptureDescription& d) {
+  if (!j.contains("world") || !j["world"].contains("unit")) return;
+  const nlohmann::json& unit = j["world"]["unit"];
+  const std::string word = unit.is_string() ? unit.get<std::string>() : unit.dump();
+  d.unit_m = unitNamed(word);
+  if (!d.unit_m) {
+    d.warnings.push_back(
+        fmt::format("\"{}\": world.unit: expected m, cm, mm, inch, foot or metres a unit, found "
+                    "\"{}\"; the subject's height tells instead, or --unit",
+                    file.string(), word));
+  }
+}
+
 CaptureDescription describe(const nlohmann::json& j, const std::filesystem::path& folder,
                             const std::filesystem::path& file) {
   if (!j.is_object() || !j.contains("cameras") || !j["cameras"].is_object()) {
@@ -68,6 +83,7 @@ CaptureDescription describe(const nlohmann::json& j, const std::filesystem::path
   d.name = j.value("name", folder.filename().string());
   if (j.contains("fps")) d.frames_per_second = finiteNumber(j, "fps", fmt::format("\"{}\"", file.string()));
   d.up = upOf(j);
+  readUnit(j, file, d);
   for (const auto& [name, camera] : j["cameras"].items()) {
     DescribedCamera c = cameraOf(name, camera, file);
     c.pictures = picturesIn(folder / "images" / name);

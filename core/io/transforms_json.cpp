@@ -177,7 +177,7 @@ CaptureDescription describe(const nlohmann::json& j, const std::filesystem::path
     const auto [place, fresh] = index.emplace(e.camera, d.cameras.size());
     if (fresh) d.cameras.push_back({e.camera, camera, Split::Train, {}, {}});
     DescribedCamera& c = d.cameras[place->second];
-    requireStill(c, camera, fmt::format("\"{}\"", file.string()));
+    addPose(c, camera, fmt::format("\"{}\"", file.string()));
     if (!c.pictures.emplace(e.frame, e.picture).second) {
       throw Error(Error::Kind::Data, fmt::format("{}: two pictures of frame {}: \"{}\" and \"{}\"", where,
                                                  e.frame, c.pictures[e.frame].string(), e.picture.string()));

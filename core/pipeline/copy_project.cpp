@@ -151,6 +151,7 @@ void copyChecked(const Project& from, const fs::path& source, const fs::path& to
   progress.check();
   ProjectDocument document = from.document();
   document.id = newProjectId();
+  document.world = from.world();
   moveReferences(document, source, to);
   writeProjectDocument(half, document);
   syncPath(half);

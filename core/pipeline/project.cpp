@@ -183,6 +183,7 @@ void Project::setPreset(const std::string& name) {
 std::vector<std::string> Project::presetNames() const { return presetNamesIn(setup_->presets); }
 
 void Project::setCapture(const fs::path& capture) {
+  if (document_.capture.absolute.empty()) finds_placement_ = true;
   document_.capture = referenceTo(capture, folder_);
   document_.capture_files = describeCapture(capture);
   without_capture_ = false;
@@ -240,12 +241,27 @@ void Project::removeLook(std::string_view name) {
   std::erase_if(document_.looks, [&](const Look& look) { return look.name == name; });
 }
 
+void Project::setUnit(double unit_m) {
+  const std::optional<CapturePlacement>& known = document_.world;
+  if (known && known->from == UnitFrom::Given && known->unit_m == unit_m && !finds_placement_) return;
+  finds_placement_ = true;
+  unit_m_ = unit_m;
+  forgetCapture();
+}
+
+std::optional<CapturePlacement> Project::world() const {
+  return finds_placement_ && !without_capture_ ? imported().placement : document_.world;
+}
+
 void Project::forgetCapture() {
   imported_.reset();
   memo_.clear();
 }
 
 void Project::save() {
+  document_.world = world();
+  if (finds_placement_) document_.world_unknown = "{}";
+  finds_placement_ = finds_placement_ && without_capture_;
   std::error_code failed;
   fs::create_directories(folder_, failed);
   if (failed) {
@@ -307,11 +323,14 @@ std::string Project::differenceOfCapture(const fs::path& folder) const {
 }
 
 void Project::relocateCapture(const fs::path& folder, bool other_too) {
-  if (const std::string other = differenceOfCapture(folder); !other_too && !other.empty()) {
+  const std::string other = differenceOfCapture(folder);
+  if (!other_too && !other.empty()) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\" is another capture than that of \"{}\", which was at \"{}\": {}",
                             folder.string(), folder_.string(), document_.capture.absolute, other));
   }
+  // Another capture may have another unit.
+  if (!other.empty() && document_.world && document_.world->from != UnitFrom::Given) finds_placement_ = true;
   setCapture(folder);
 }
 
@@ -329,6 +348,8 @@ const ImportedCapture& Project::imported() const {
     ImportOptions options;
     options.up = document_.up;
     options.hold_out = document_.hold_out;
+    options.unit_m = unit_m_;
+    if (!finds_placement_) options.placement = document_.world.value_or(CapturePlacement{});
     imported_ = std::make_shared<const ImportedCapture>(setup_->open_capture(captureFolder(), options));
   }
   return *imported_;

@@ -79,12 +79,17 @@ class Project {
   // Error{Usage} for a name that is none (isLookName) and for more than kMostLooks.
   void setLook(const Look& look);
   void removeLook(std::string_view name);  // nothing when there is none
-  // Writes project.json when it differs from what is on disk; nothing else ever does. Throws Error{Locked} or
-  // Error{Storage}.
+  // Metres a unit of the capture; its place is found anew with it.
+  void setUnit(double unit_m);
+  // Writes project.json when it differs from what is on disk; nothing else ever does. What a new project
+  // finds of its capture's unit and origin is kept from now on. Throws Error{Locked} or Error{Storage}.
   void save();
 
   // --- Capture, read when first asked for and kept. ---
   const ImportedCapture& imported() const;
+  // Its unit and origin as document() has them or, in a project that is new, as they were found; none: the
+  // capture is only turned.
+  std::optional<CapturePlacement> world() const;
   const CaptureSet& capture() const { return imported().set; }
   std::filesystem::path captureFolder() const;
   // Whether `folder` holds the capture of this project: the same folder, or one described by the same bytes.
@@ -176,6 +181,8 @@ class Project {
   mutable std::shared_ptr<const InputDigests> inputs_;
   mutable KeyMemo memo_;
   bool without_capture_ = false, sketch_ = false;
+  bool finds_placement_ = false;  // of the capture, when it is read next
+  std::optional<double> unit_m_;  // that was given for it
 };
 
 }  // namespace beam

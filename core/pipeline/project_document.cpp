@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <random>
 #include <thread>
@@ -59,6 +60,31 @@ void readTakes(const Json& j, ProjectDocument& document) {
   }
 }
 
+Json toJsonValue(const CapturePlacement& p, const std::string& unknown) {
+  Json j = {{"unit_m", p.unit_m}, {"origin", {p.origin.x, p.origin.y, p.origin.z}}, {"from", toText(p.from)}};
+  if (p.height > 0) j["height"] = p.height;
+  const Json others = Json::parse(unknown);
+  for (const auto& [key, value] : others.items()) j[key] = value;
+  return j;
+}
+
+void readWorld(Json j, ProjectDocument& document) {
+  CapturePlacement p;
+  p.unit_m = j.at("unit_m").get<double>();
+  const auto origin = j.at("origin").get<std::array<double, 3>>();
+  p.origin = {origin[0], origin[1], origin[2]};
+  p.height = j.value("height", 0.0);
+  try {
+    p.from = parseUnitFrom(j.at("from").get<std::string>());
+    validate(p);
+  } catch (const Error& e) {
+    throw Error(Error::Kind::Data, fmt::format("world: {}", e.what()));
+  }
+  document.world = p;
+  for (const char* known : {"unit_m", "origin", "from", "height"}) j.erase(known);
+  document.world_unknown = j.dump();
+}
+
 fs::path nextHistoryFile(const fs::path& history) {
   std::vector<fs::path> kept;
   for (const auto& entry : fs::directory_iterator(history)) {
@@ -108,13 +134,14 @@ ProjectDocument documentOf(Json j) {
   if (j.contains("environment")) document.environment = parseReference(j["environment"]);
   if (j.contains("hold_out")) document.hold_out = j["hold_out"].get<std::vector<std::string>>();
   if (j.contains("up")) document.up = parseUpAxis(j["up"].get<std::string>());
+  if (j.contains("world")) readWorld(j["world"], document);
   document.preset = j.at("preset").get<std::string>();
   for (const auto& [key, value] : j.at("settings").items())
     document.settings[key] = parseFieldValue(value.dump());
   if (j.contains("takes")) readTakes(j["takes"], document);
   if (j.contains("looks")) document.looks = parseLooks(j["looks"].dump());
-  for (const char* known :
-       {"format", "id", "capture", "environment", "hold_out", "up", "preset", "settings", "takes", "looks"}) {
+  for (const char* known : {"format", "id", "capture", "environment", "hold_out", "up", "world", "preset",
+                            "settings", "takes", "looks"}) {
     j.erase(known);
   }
   document.unknown = j.dump();
@@ -205,6 +232,7 @@ std::string toJson(const ProjectDocument& document) {
   if (document.environment) j["environment"] = toJsonValue(*document.environment);
   j["hold_out"] = document.hold_out;
   if (document.up) j["up"] = toText(*document.up);
+  if (document.world) j["world"] = toJsonValue(*document.world, document.world_unknown);
   j["preset"] = document.preset;
   j["settings"] = Json::object();
   for (const auto& [key, value] : document.settings) {

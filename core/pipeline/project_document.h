@@ -17,7 +17,7 @@
 #include "core/base/hash.h"
 #include "core/pipeline/file_lock.h"
 #include "core/pipeline/takes.h"
-#include "core/scene/capture.h"
+#include "core/scene/capture_placement.h"
 #include "core/scene/look.h"
 
 namespace beam {
@@ -40,6 +40,8 @@ struct ProjectDocument {
   std::optional<FileReference> environment;  // absent: the capture's own
   std::vector<std::string> hold_out;         // camera names, or one number N: every Nth
   std::optional<UpAxis> up;
+  std::optional<CapturePlacement> world;  // as found when the project was made; absent: only turned
+  std::string world_unknown = "{}";       // further members of it, kept as they are (JSON)
   std::string preset = "standard";
   std::map<std::string, FieldValue> settings;  // what differs from the preset
   std::vector<SavedTake> takes;                // later ones win

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/io/file.h"
 #include "core/pipeline/file_lock.h"
 #include "core/pipeline/project_report.h"
+#include "core/scene/transform.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
 namespace beam::testing {
@@ -55,6 +57,92 @@ TEST(ProjectSettings, OnlyWhatDiffersFromThePresetIsKept) {
   p.set("surface.iterations", 10);
   p.save();
   EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 10);
+}
+
+// Lets the house find that its capture is in millimetres, far away; counts how often it is asked to.
+void findsMillimetres(FakeHouse& house, int& found) {
+  house.setup->open_capture = [&found, open = house.setup->open_capture](const auto& folder,
+                                                                         const ImportOptions& options) {
+    ImportedCapture imported = open(folder, options);
+    found += !options.placement;
+    imported.placement = options.placement.value_or(
+        CapturePlacement{options.unit_m.value_or(0.001), {210000.5, 0.1, -3}, UnitFrom::Height, 1712.25});
+    if (options.unit_m && !options.placement) imported.placement.from = UnitFrom::Given;
+    imported.set =
+        transformed(std::move(imported.set), worldFromCapture(imported.set.up, imported.placement));
+    return imported;
+  };
+}
+
+TEST(ProjectWorld, IsFoundOnceWhenAProjectIsMadeAndKept) {
+  FakeHouse house;
+  int found = 0;
+  findsMillimetres(house, found);
+  Project made = house.newProject();
+  EXPECT_EQ(found, 1);
+  const Project again = house.open();
+  EXPECT_EQ(again.imported().placement, made.imported().placement) << "to the last bit";
+  EXPECT_EQ(again.document().world, made.imported().placement);
+  EXPECT_EQ(again.capture().capture_from_world, made.capture().capture_from_world);
+  EXPECT_EQ(again.key("surface.fit", FrameIndex{0}), made.key("surface.fit", FrameIndex{0}));
+  made.setUp(UpAxis::PlusZ);
+  made.capture();
+  EXPECT_EQ(found, 1);
+}
+
+TEST(ProjectWorld, AProjectOfBeforeOnlyTurnsItsCapture) {
+  FakeHouse house;
+  const Project before = house.newProject();
+  ProjectDocument document = before.document();
+  document.world.reset();
+  writeFileAtomically(before.folder() / "project.json", toJson(document));
+  int found = 0;
+  findsMillimetres(house, found);
+  Project again = house.open();
+  EXPECT_TRUE(isIdentity(again.capture().capture_from_world));
+  again.save();
+  EXPECT_EQ(found, 0);
+  EXPECT_EQ(readTextFile(before.folder() / "project.json"), toJson(document)) << "there is nothing to do";
+  EXPECT_EQ(again.key("surface.fit", FrameIndex{0}), before.key("surface.fit", FrameIndex{0}));
+}
+
+TEST(ProjectWorld, AUnitThatIsGivenHoldsAndIsAskedForOnce) {
+  FakeHouse house;
+  int found = 0;
+  findsMillimetres(house, found);
+  Project p = house.newProject();
+  p.setUnit(0.01);
+  p.save();
+  EXPECT_EQ(found, 2);
+  Project again = house.open();
+  again.setUnit(0.01);
+  EXPECT_EQ(again.imported().placement.unit_m, 0.01);
+  EXPECT_EQ(again.imported().placement.from, UnitFrom::Given);
+  EXPECT_EQ(found, 2);
+}
+
+TEST(ProjectWorld, WhatIsNoPlacementIsRefusedAndWhatALaterProgramSaysOfItStays) {
+  FakeHouse house;
+  int found = 0;
+  findsMillimetres(house, found);
+  const std::string text = readTextFile(house.newProject().folder() / "project.json");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    return changed.replace(changed.find(from), from.size(), to);
+  };
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"\"unit_m\": 0.001", "\"unit_m\": 0"},
+                                                        {"\"unit_m\": 0.001", "\"unit_m\": \"mm\""},
+                                                        {"\"unit_m\": 0.001", "\"unit_m\": null"},
+                                                        {"210000.5,", ""},
+                                                        {"\"from\": \"height\"", "\"from\": \"hearsay\""},
+                                                        {"\"height\": 1712.25", "\"height\": -1"}}) {
+    EXPECT_THROW(parseProjectDocument(with(from, to), "p"), BrokenDocument) << to;
+  }
+  const std::string later = with("\"unit_m\"", "\"turned\": [1, 2], \"unit_m\"");
+  const ProjectDocument read = parseProjectDocument(later, "p");
+  EXPECT_EQ(read.world->origin, dvec3(210000.5, 0.1, -3));
+  EXPECT_EQ(parseProjectDocument(toJson(read), "p").world_unknown, R"({"turned":[1,2]})");
 }
 
 TEST(ProjectSettings, EveryFieldIsListedUnderItsFullName) {
