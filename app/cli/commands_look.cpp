@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/run_flags.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/io/capture_check.h"
@@ -18,7 +19,7 @@ namespace beam {
 namespace {
 
 struct CheckFlags {
-  std::string path, up;
+  std::string path, up, unit;
   bool json = false;
   std::vector<std::string> hold_out;
 };
@@ -27,6 +28,7 @@ int runCheck(const CheckFlags& flags, Console& console) {
   ImportOptions options;
   options.hold_out = flags.hold_out;
   if (!flags.up.empty()) options.up = parseUpAxis(flags.up);
+  if (!flags.unit.empty()) options.unit_m = parseUnit(flags.unit);
   const CheckReport report = checkPath(flags.path, options);
   for (const std::string& w : report.warnings) console.warning(w);
   console.print(flags.json ? toJson(report) : toText(report));
@@ -66,6 +68,7 @@ void addCheckCommand(CLI::App& app, CommandContext& context) {
       ->required();
   command->add_flag("--json", flags->json, "Print JSON");
   command->add_option("--up", flags->up, "Up axis of the capture: +Y, +Z or -Y");
+  command->add_option("--unit", flags->unit, kUnitHelp)->type_name("m|cm|mm|NUMBER");
   command->add_option("--hold-out", flags->hold_out, "Cameras kept for testing: names or every Nth")
       ->delimiter(',');
   command->callback([flags, &context] {

@@ -40,6 +40,14 @@ Project projectFor(const fs::path& folder, const fs::path& capture, const Servic
   return project;
 }
 
+// What a capture was taken for, where it is more than turned; once, when its project is made.
+void tellPlacement(const Project& project, Console& console) {
+  if (isTurn(project.capture().capture_from_world)) return;
+  const CapturePlacement& placement = project.imported().placement;
+  const bool given = placement.from == UnitFrom::Given;
+  console.info(toText(placement) + (given ? "" : " (--unit says otherwise)"));
+}
+
 std::string statusOf(const Project& project, bool json) {
   const std::vector<LeftOutCamera> left_out = leftOutCameras(project);
   if (!json) {
@@ -72,8 +80,10 @@ void addProcessCommand(CLI::App& app, CommandContext& context) {
   addRunFlags(*command, a->run);
   command->callback([a, &context] {
     context.action = [a, &context] {
+      const bool made = !Project::isProject(a->project);
       Project project = projectFor(a->project, a->capture, context.services);
       applyFlags(project, a->project_flags);
+      if (made) tellPlacement(project, context.console);
       return runProject(std::move(project), a->run, context);
     };
   });
@@ -90,6 +100,7 @@ void addNewCommand(CLI::App& app, CommandContext& context) {
       Project project = newProject(a->project, a->capture, context.services);
       applyFlags(project, a->project_flags);
       const CaptureSet& capture = project.capture();
+      tellPlacement(project, context.console);
       project.save();
       context.console.print(fmt::format("made {} ({} cameras, {} frames)", a->project, capture.views.size(),
                                         capture.frames.size()));

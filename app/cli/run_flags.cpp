@@ -33,6 +33,14 @@ void setFromText(Project& project, const std::string& assignment) {
 
 }  // namespace
 
+double parseUnit(const std::string& text) {
+  if (const std::optional<double> unit_m = unitNamed(text)) return *unit_m;
+  throw Error(
+      Error::Kind::Usage,
+      fmt::format("--unit expects m, cm, mm, inch, foot or metres a unit, a number above 0; found \"{}\"",
+                  text));
+}
+
 void addProjectFlags(CLI::App& command, ProjectFlags& flags) {
   command.add_option("--preset", flags.preset, "draft, standard (when nothing is said) or paper");
   command.add_option("--set", flags.set, "A setting, e.g. --set surface.iterations=2000; see beam stages")
@@ -46,6 +54,7 @@ void addProjectFlags(CLI::App& command, ProjectFlags& flags) {
       .add_option("--hold-out", flags.hold_out, "Cameras kept for testing: N (every Nth), NAME,NAME or none")
       ->type_name("N|NAMES");
   command.add_option("--up", flags.up, "Up axis of the capture: +Y, +Z or -Y")->type_name("AXIS");
+  command.add_option("--unit", flags.unit, kUnitHelp)->type_name("m|cm|mm|NUMBER");
 }
 
 void addRunFlags(CLI::App& command, RunFlags& flags) {
@@ -76,6 +85,7 @@ void applyFlags(Project& project, const ProjectFlags& flags) {
                                                  : splitAtCommas(*flags.hold_out));
   }
   if (flags.up) project.setUp(parseUpAxis(*flags.up));
+  if (flags.unit) project.setUnit(parseUnit(*flags.unit));
 }
 
 int runProject(Project project, const RunFlags& flags, CommandContext& context) {

@@ -15,7 +15,7 @@ namespace beam {
 struct ProjectFlags {
   std::string preset;
   std::vector<std::string> set;  // key=value
-  std::optional<std::string> environment, hold_out, up;
+  std::optional<std::string> environment, hold_out, up, unit;
 };
 
 // What one run is about.
@@ -24,6 +24,13 @@ struct RunFlags {
   int every = 1;
   DeviceChoice device;
 };
+
+inline constexpr const char* kUnitHelp =
+    "Unit of the capture: m, cm, mm, inch, foot or metres a unit; else its description or the subject's "
+    "height "
+    "tells";
+// Metres a unit; throws Error{Usage}.
+double parseUnit(const std::string& text);
 
 void addProjectFlags(CLI::App& command, ProjectFlags& flags);
 void addRunFlags(CLI::App& command, RunFlags& flags);
