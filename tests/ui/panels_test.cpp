@@ -17,7 +17,10 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include <algorithm>
+
 #include "core/render/device.h"
+#include "core/scene/transform.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/wait_for.h"
 #include "ui/elided_label.h"
@@ -85,6 +88,32 @@ class Panels : public ::testing::Test {
   ProjectModel model;
   QWidget window;
 };
+
+bool says(const QWidget& panel, const QString& words) {
+  const QList<QLabel*> labels = panel.findChildren<QLabel*>();
+  return std::any_of(labels.begin(), labels.end(),
+                     [&](const QLabel* l) { return l->text().contains(words); });
+}
+
+TEST_F(Panels, TheProjectSaysWhatItsCaptureWasTakenForWhereItIsMoreThanTurned) {
+  ProjectPanel metres(model);
+  EXPECT_FALSE(says(metres, "taken as"));
+  StudioServices with = services();
+  auto setup = std::make_shared<PipelineSetup>();
+  setup->open_capture = [](const fs::path& capture, const ImportOptions& options) {
+    ImportedCapture imported = threeCameras(capture, options);
+    imported.placement = {0.001, dvec3(0), UnitFrom::Height, 1712};
+    imported.set = transformed(std::move(imported.set), worldFromCapture(UpAxis::PlusY, imported.placement));
+    return imported;
+  };
+  with.pipeline = setup;
+  ProjectModel scaled(with);
+  fs::create_directory(folder / "millimetres");
+  scaled.open(folder / "millimetres");
+  ASSERT_TRUE(waitFor([&] { return scaled.isOpen() && scaled.settled(); }));
+  ProjectPanel millimetres(scaled);
+  EXPECT_TRUE(says(millimetres, "The subject is 1,712 units tall: taken as millimetres"));
+}
 
 struct Cameras {
   explicit Cameras(ProjectPanel& panel) : tree(panel.cameras()) {
