@@ -9,6 +9,7 @@
 #include "core/pipeline/project_history.h"
 #include "core/pipeline/take_survey.h"
 #include "tests/core/pipeline/fake_pipeline.h"
+#include "tests/support/message_of.h"
 #include "tests/support/random_look.h"
 
 namespace beam::testing {
@@ -22,18 +23,6 @@ Look namedLook(const std::string& name) {
   Look look;
   look.name = name;
   return look;
-}
-
-template <class Body>
-std::string messageOf(Error::Kind kind, Body&& body) {
-  try {
-    body();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), kind) << e.what();
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
 }
 
 class ProjectLooks : public ::testing::Test {

@@ -7,23 +7,12 @@
 #include "core/pipeline/project_report.h"
 #include "core/scene/transform.h"
 #include "tests/core/pipeline/fake_pipeline.h"
+#include "tests/support/message_of.h"
 
 namespace beam::testing {
 namespace {
 
 using ::testing::HasSubstr;
-
-template <class Body>
-std::string messageOf(Error::Kind kind, Body&& body) {
-  try {
-    body();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), kind) << e.what();
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
-}
 
 TEST(ProjectSettings, AnUnknownKeyNamesTheNearest) {
   FakeHouse house;

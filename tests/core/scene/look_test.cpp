@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/random_look.h"
 
 namespace beam {
@@ -20,19 +21,8 @@ using ::testing::ElementsAre;
 using testing::filled;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using testing::messageOf;
 using testing::randomLook;
-
-template <class Body>
-std::string messageOf(Error::Kind kind, Body&& body) {
-  try {
-    body();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), kind) << e.what();
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
-}
 
 std::string refusal(const Look& look) {
   return messageOf(Error::Kind::Data, [&] { validate(look); });
