@@ -97,7 +97,9 @@ void FrameCache::want(std::vector<SequenceFrame> wishes) {
 }
 
 bool FrameCache::isWished(const Key& key) const {
-  return std::any_of(wishes_.begin(), wishes_.end(), [&](const auto& wish) { return keyOf(wish) == key; });
+  return std::any_of(wishes_.begin(), wishes_.end(), [&](const SequenceFrame& wish) {
+    return wish.frame.value == key.second && wish.sequence->id() == key.first;
+  });
 }
 
 // Frames of a take are of a size: one more like those that are held would push out a wished one.
