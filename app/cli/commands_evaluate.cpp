@@ -152,7 +152,7 @@ Evaluated scoreHeldOut(const EvaluateFlags& flags, const Project& project, Comma
   }
   addMean("rgb_held_out", all, e.table);
   Progress part = progress.part(0.2, "compare frames");
-  scoreMotion(*sequence, capture.views, frames, nullptr, *device, part, e.each);
+  scoreMotion(*sequence, {}, frames, nullptr, *device, part, e.each);
   return e;
 }
 

@@ -55,14 +55,10 @@ struct Moment {
 
 class MotionScorer {
  public:
-  MotionScorer(const GaussianSequence& sequence, const std::vector<View>& views, const GroundTruth* truth,
-               ComputeDevice& device, PictureScores& each)
+  MotionScorer(const GaussianSequence& sequence, const std::vector<View>& test_views,
+               const GroundTruth* truth, ComputeDevice& device, PictureScores& each)
       : sequence_(sequence), truth_(truth), device_(device), renderer_(device), each_(each) {
-    if (!truth) return;
-    for (const View& view : views) {
-      const auto& tests = truth->test_cameras;
-      if (std::find(tests.begin(), tests.end(), view.name) != tests.end()) cameras_.push_back(view.camera);
-    }
+    for (const View& view : test_views) cameras_.push_back(view.camera);
   }
 
   void frame(FrameIndex index) {
@@ -188,11 +184,11 @@ Json worstOf(const PictureScores& each) {
 
 }  // namespace
 
-void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& views,
+void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& test_views,
                  const std::vector<FrameIndex>& frames, const GroundTruth* truth, ComputeDevice& device,
                  Progress& progress, PictureScores& each) {
   progress.expect(static_cast<std::int64_t>(frames.size()));
-  MotionScorer scorer(sequence, views, truth, device, each);
+  MotionScorer scorer(sequence, test_views, truth, device, each);
   for (const FrameIndex frame : frames) {
     scorer.frame(frame);
     progress.step();

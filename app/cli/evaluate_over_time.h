@@ -18,9 +18,8 @@ namespace beam {
 // same points in all frames):
 //   "drift.median_mm", "drift.p95_mm"            against the first frame of the take
 //   "flicker.radiance", "flicker.base_color"     along the true points in maps of the test cameras, mean
-// A take is a run of neighbouring frames that are tracked. `views`: of the capture, its test cameras among
-// them.
-void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& views,
+// A take is a run of neighbouring frames that are tracked. `test_views`: the truth's; unused without one.
+void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& test_views,
                  const std::vector<FrameIndex>& frames, const GroundTruth* truth, ComputeDevice& device,
                  Progress& progress, PictureScores& each);
 
