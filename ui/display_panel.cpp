@@ -11,6 +11,7 @@
 #include <QVBoxLayout>
 #include <QWheelEvent>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ui/quiet_combo.h"
@@ -100,9 +101,8 @@ DisplayPanel::DisplayPanel(SplatView& view, LightLibrary& lights, QWidget* paren
       sky_(new QCheckBox("Show panorama")),
       lock_depth_(new QCheckBox("Lock depth limits")),
       open_(new QPushButton("Open panorama…")) {
-  for (int i = 0; i < kChannelCount; ++i) {
-    channel_->addItem(QString("%1   %2").arg(i + 1).arg(infoOf(static_cast<Channel>(i)).title));
-  }
+  for (const ChannelInfo& channel : shownChannels())
+    channel_->addItem(QString("%1   %2").arg(channel.key).arg(QString::fromStdString(channel.title)));
   makeRows();
   connectParts();
   mirror(view_.state());
@@ -139,7 +139,7 @@ void DisplayPanel::makeRows() {
 
 void DisplayPanel::connectParts() {
   connect(channel_, QOverload<int>::of(&QComboBox::activated), this,
-          [this](int i) { view_.setChannel(static_cast<Channel>(i)); });
+          [this](int i) { view_.setChannel(shownChannels()[static_cast<std::size_t>(i)]); });
   connect(light_, QOverload<int>::of(&QComboBox::activated), &lights_, &LightLibrary::choose);
   connect(open_, &QPushButton::clicked, this, &DisplayPanel::openLightWanted);
   connect(yaw_, &QSlider::valueChanged, this,
@@ -157,7 +157,8 @@ void DisplayPanel::connectParts() {
 
 void DisplayPanel::mirror(const ViewState& state) {
   const QSignalBlocker quiet_yaw(yaw_), quiet_exposure(exposure_), quiet_photo(photo_), quiet_sky(sky_);
-  channel_->setCurrentIndex(static_cast<int>(state.channel));
+  const auto& all = shownChannels();
+  channel_->setCurrentIndex(static_cast<int>(std::find(all.begin(), all.end(), state.channel) - all.begin()));
   yaw_->setValue(static_cast<int>(std::lround(state.yaw_rad * kDegrees)));
   exposure_->setValue(static_cast<int>(std::lround(state.exposure_stops / kStopsPerTick)));
   photo_->setValue(static_cast<int>(std::lround(100 * state.photo_opacity)));
@@ -173,7 +174,7 @@ void DisplayPanel::mirror(const ViewState& state) {
             : QString("Look through a camera first ([ and ]): its photograph is laid over the render."),
         "How much of the photograph lies over the render");
   sky_->setChecked(state.sky);
-  const bool depth = state.channel == Channel::Depth;
+  const bool depth = state.channel.id == kDepthChannel;
   lock_depth_->setChecked(state.depth_limits.has_value());
   allow(*lock_depth_,
         !not_used.isEmpty() ? not_used
@@ -216,7 +217,7 @@ void DisplayPanel::allowLights() {
         !not_used.isEmpty() ? not_used
         : lit               ? QString()
                             : QString("There is no panorama to show: choose or open one."),
-        "Behind the subject, in Lit, Radiance and Base colour");
+        "Behind the subject, in Relit, Colour and Base colour");
 }
 
 QString DisplayPanel::notUsed() const {

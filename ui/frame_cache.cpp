@@ -22,9 +22,15 @@ FrameValues valuesOf(std::shared_ptr<const GaussianFrame> frame) {
   values.stale = frame->stale;
   values.stale_note = frame->stale_note;
   if (frame->materials) values.materials = {frame, &*frame->materials};
+  values.attributes = {frame, &frame->attributes};
   const GaussianCloud* cloud = &frame->cloud;
   values.cloud = {std::move(frame), cloud};
   return values;
+}
+
+std::vector<RenderInstance> instancesOf(const FrameValues& values) {
+  if (!values.cloud) return {};
+  return {{.cloud = values.cloud, .materials = values.materials, .attributes = values.attributes}};
 }
 
 std::uint64_t bytesOf(const FrameValues& v) {

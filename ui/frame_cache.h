@@ -16,18 +16,22 @@
 #include <vector>
 
 #include "core/scene/gaussian_sequence.h"
+#include "core/scene/render_scene.h"
 
 namespace beam {
 
 struct FrameValues {
   std::shared_ptr<const GaussianCloud> cloud;  // null: not there yet
   std::shared_ptr<const Materials> materials;
+  std::shared_ptr<const std::vector<Attribute>> attributes;
   std::shared_ptr<const Mesh> mesh;
   bool interpolated = false;  // between two solved frames of a scout run
   bool stale = false;         // not what the settings in force would give; `stale_note` says what of it
   std::string stale_note = {};
 };
 
+// What there is to draw; none without Gaussians.
+std::vector<RenderInstance> instancesOf(const FrameValues& values);
 FrameValues valuesOf(std::shared_ptr<const GaussianFrame> frame);  // null: nothing
 std::uint64_t bytesOf(const FrameValues& values);
 // What a machine can spare: 2 GB or a quarter of its memory, whichever is less.

@@ -21,7 +21,7 @@ namespace beam {
 namespace {
 
 constexpr const char* kPhotograph = "photo";
-constexpr const char* kRender = "render.radiance";
+constexpr const char* kRender = "render.rgb";
 constexpr int kSpacing_px = 8;
 
 QLabel* quiet(const QString& words) {

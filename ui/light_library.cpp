@@ -8,7 +8,22 @@
 
 namespace beam {
 
-LightLibrary::LightLibrary(QObject* parent) : QObject(parent) {}
+namespace {
+
+// So that the first picture in it does not wait for that.
+void prepare(const std::shared_ptr<const Environment>& light, const SceneRendererFactory& new_renderer) {
+  if (!new_renderer) return;
+  const auto renderer = new_renderer();
+  RenderScene scene;
+  scene.environment = light;
+  if (!renderer->abilities().needs_context) renderer->load(scene);
+}
+
+}  // namespace
+
+LightLibrary::LightLibrary(SceneRendererFactory new_renderer, QObject* parent)
+    : QObject(parent), new_renderer_(std::move(new_renderer)) {}
+
 LightLibrary::~LightLibrary() = default;
 
 void LightLibrary::reset(const std::filesystem::path& dome) {
@@ -45,11 +60,13 @@ void LightLibrary::choose(int index) {
     return;
   }
   Q_EMIT lightChanged();
-  worker_.submit([this, file = entries_[index].file, ticket] {
-    std::shared_ptr<const PreparedLight> light;
+  worker_.submit([this, file = entries_[index].file, ticket, new_renderer = new_renderer_] {
+    std::shared_ptr<const Environment> light;
     QString error;
     try {
-      light = std::make_shared<const PreparedLight>(makeEnvironment(readRadiance(file)));
+      auto read = std::make_shared<const Environment>(makeEnvironment(readRadiance(file)));
+      prepare(read, new_renderer);
+      light = std::move(read);
     } catch (const std::exception& e) {  // the border of this thread: said in the window
       error = QString::fromStdString(e.what());
     }
@@ -72,7 +89,7 @@ void LightLibrary::choose(int index) {
   });
 }
 
-std::shared_ptr<const PreparedLight> LightLibrary::light() const {
+std::shared_ptr<const Environment> LightLibrary::light() const {
   if (chosen_ < 0) return nullptr;
   const auto found = prepared_.find(entries_[chosen_].file);
   return found == prepared_.end() ? nullptr : found->second;

@@ -53,13 +53,13 @@ constexpr const char* kViewNames[] = {"splat", "image", "scene"};
 constexpr const char* kScopeNames[] = {"frame", "range", "take", "scout"};
 constexpr QSize kUsualSize(1600, 1000), kLeastSize(1000, 640);
 
-QString machineText(const StudioServices& services) {
+QString machineText(const RendererAbilities& renderer) {
   const double memory_gb =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e9;
   return QString(
              "%1, %2 GB of memory. No graphics card is needed: Gaussians are rasterised on the processor and "
              "only shown through OpenGL.")
-      .arg(QString::fromStdString(services.view_device->info().title))
+      .arg(QString::fromStdString(renderer.title))
       .arg(memory_gb, 0, 'f', 0);
 }
 
@@ -90,6 +90,7 @@ MainWindow::MainWindow(StudioServices services, Layout layout)
     : services_(services),
       memory_(layout == Layout::Remembered),
       model_(std::move(services)),
+      lights_(services_.new_renderer),
       player_(model_, [this] { return viewFollows(); }),
       joints_(model_) {
   setAcceptDrops(true);
@@ -135,8 +136,8 @@ void MainWindow::makeParts() {
   run_bar_ = new RunBar;
   run_bar_->setStages(services_.pipeline->stages.infos());
   message_ = new MessagePanel;
-  start_ = new StartPage(machineText(services_));
-  splat_ = new SplatView(services_.view_device);
+  splat_ = new SplatView(services_.new_renderer);
+  start_ = new StartPage(machineText(splat_->abilities()));
   images_ = new ImagePage(model_);
   scene_ = new SceneView;
   rail_->setStages(stagesWithoutTake(services_.pipeline->stages.infos()));

@@ -249,12 +249,12 @@ void MainWindow::addViewCommands() {
   view("view_splat", "Splats", "Ctrl+1", StudioView::Splat);
   view("view_image", "Images", "Ctrl+2", StudioView::Image);
   view("view_scene", "Scene", "Ctrl+3", StudioView::Scene);
-  for (int i = 0; i < kChannelCount; ++i) {
-    const auto channel = static_cast<Channel>(i);
+  for (const ChannelInfo& channel : shownChannels()) {
+    const QString title = QString::fromStdString(channel.title);
     // The digit is told, not bound: letters and digits belong to the view that has the focus.
-    commands_.add(QString("channel_") + infoOf(channel).name,
-                  {.text = QString("%1\t%2").arg(infoOf(channel).title).arg(i + 1),
-                   .tip = QString("Splat view: %1, %2").arg(infoOf(channel).title, infoOf(channel).legend),
+    commands_.add(QString::fromStdString("channel_" + channel.id),
+                  {.text = QString("%1\t%2").arg(title).arg(channel.key),
+                   .tip = QString("Splat view: %1, %2").arg(title, QString::fromStdString(channel.legend)),
                    .act =
                        [this, channel] {
                          splat_->setChannel(channel);
@@ -398,8 +398,8 @@ void MainWindow::makeMenus() {
     for (const QString& id : ids) made->addAction(commands_.action(id));
   };
   QStringList channels;
-  for (int i = 0; i < kChannelCount; ++i)
-    channels << QString("channel_") + infoOf(static_cast<Channel>(i)).name;
+  for (const ChannelInfo& channel : shownChannels())
+    channels << QString::fromStdString("channel_" + channel.id);
   submenu("Channel", channels);
   submenu("Camera", {"frame_subject", "go_home", "look_front", "look_back", "look_right", "look_left",
                      "look_top", "look_bottom"});

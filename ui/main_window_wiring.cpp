@@ -291,18 +291,20 @@ void MainWindow::showSplats() {
   images_->view().setBadge(staleWords(values));  // which shows neither previews nor held frames
   if (previewWins()) {
     splat_->setBadge(preview_.live ? "live preview" : "preview of the run that was stopped");
+    FrameValues seen;
+    seen.cloud = preview_.cloud;
     return splat_->setScene(
-        {preview_.cloud, nullptr},
+        instancesOf(seen),
         QString("frame %1 · %2").arg(model_.frameName(), countText(preview_.cloud->size(), "Gaussian")));
   }
   if (const auto& held = model_.held()) {
     const QString from = model_.nameOf(held->from);
     splat_->setBadge(staleWords(held->values));
-    return splat_->setScene({held->values.cloud, held->values.materials},
+    return splat_->setScene(instancesOf(held->values),
                             QString("frame %1 is not solved: held from %2").arg(model_.frameName(), from));
   }
   splat_->setBadge(staleWords(values));
-  splat_->setScene({values.cloud, values.materials},
+  splat_->setScene(instancesOf(values),
                    "frame " + model_.valuesFrameName() + (values.interpolated ? ", interpolated" : ""));
 }
 
@@ -327,7 +329,7 @@ void MainWindow::showStatus() {
   if (model_.values().cloud) {
     parts << QString("drawn in %1 ms").arg(numberText(std::llround(splat_->fullPictureMilliseconds())));
   }
-  parts << QString::fromStdString(services_.view_device->info().title);
+  parts << QString::fromStdString(splat_->abilities().title);
   state_words_->setText(parts.join("   ·   "));
 }
 

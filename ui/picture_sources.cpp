@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/io/image_file.h"
-#include "core/render/deferred.h"
+#include "core/render/scene_renderer.h"
 #include "core/stages/result_files.h"
 #include "core/stages/step_ids.h"
 #include "viewers/splat/splat_view.h"
@@ -17,43 +17,20 @@ namespace {
 
 constexpr float kVisible = 1 / 255.0f;
 
-// value x alpha -> value, 0 where nothing is.
-template <class T>
-Image<T> surfaceValues(Image<T> image, const Image<float>& alpha) {
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = alpha.pixels[i] < kVisible ? T(0) : image.pixels[i] / alpha.pixels[i];
+// A channel as a picture: of what is blended the surface's own value, of colours what is seen.
+Picture pictureOf(const ChannelInfo& channel, const Planes& values, const Planes& alpha, std::string label) {
+  Picture p;
+  p.label = std::move(label);
+  p.values = values;
+  p.encoding = channel.encoding;
+  p.false_color = channel.false_color;
+  p.unit = channel.unit;
+  if (channel.quantity == Quantity::Color || !channel.times_alpha) return p;
+  for (std::size_t i = 0; i < p.values.values.size(); ++i) {
+    const float cover = alpha.values[i % alpha.planeSize()];
+    p.values.values[i] = cover < kVisible ? 0 : values.values[i] / cover;
   }
-  return image;
-}
-
-Picture channelOf(const GBuffer& g, const Image<vec3>& lit, Channel channel, std::string label) {
-  switch (channel) {
-    case Channel::Lit:
-      return pictureOf(lit, std::move(label));
-    case Channel::Radiance:
-      return pictureOf(g.radiance, std::move(label));
-    case Channel::BaseColor:
-      return pictureOf(g.base_color, std::move(label));
-    case Channel::AmbientOcclusion:
-      return pictureOf(surfaceValues(g.ambient_occlusion, g.alpha), std::move(label));
-    case Channel::Normal: {
-      Picture p = pictureOf(g.normal_world, std::move(label));
-      p.encoding = Encoding::Data;
-      return p;
-    }
-    case Channel::Roughness: {
-      Picture p = pictureOf(surfaceValues(g.roughness, g.alpha), std::move(label));
-      p.false_color = true;
-      return p;
-    }
-    case Channel::Depth: {
-      Picture p = pictureOf(g.depth_m, std::move(label));
-      p.false_color = true;
-      p.unit = std::string("m");
-      return p;
-    }
-  }
-  return {};
+  return p;
 }
 
 struct Shot {
@@ -93,53 +70,65 @@ struct Render {
   Shot shot;
   FrameValues values;
   PictureLight light;
-  std::shared_ptr<ComputeDevice> device;
+  SceneRendererFactory new_renderer;
 };
 
-Picture renderedOf(const Render& r, Channel channel) {
-  const char* title = infoOf(channel).title;
-  const bool of_materials = channel == Channel::Lit || channel == Channel::BaseColor ||
-                            channel == Channel::AmbientOcclusion || channel == Channel::Roughness;
-  if (!r.values.cloud) {
+void refuseWhatIsNotThere(const Render& r, const ChannelInfo& channel, Lack lack) {
+  switch (lack) {
+    case Lack::None:
+      return;
+    case Lack::Materials:
+      refuse(fmt::format("{} needs materials, which frame {} does not have yet. Run until Materials.",
+                         channel.title, r.shot.frame_name));
+    case Lack::Light:
+      refuse(r.light.reading ? "reading the light"
+                             : "No light chosen. Choose or open a panorama under Display.");
+    case Lack::Attribute:
+      refuse(fmt::format("{} is not in the Gaussians of frame {}.", channel.title, r.shot.frame_name));
+  }
+}
+
+Picture renderedOf(const Render& r, const ChannelInfo& channel) {
+  RenderScene scene;
+  scene.instances = instancesOf(r.values);
+  scene.environment = r.light.light;
+  scene.lighting.environment.rotation_deg = glm::degrees(static_cast<double>(r.light.yaw_rad));
+  if (scene.instances.empty()) {
     refuse(fmt::format("frame {} is not solved: there is nothing to render. Press Run to compute it.",
                        r.shot.frame_name));
   }
-  if (of_materials && !r.values.materials) {
-    refuse(fmt::format("{} needs materials, which frame {} does not have yet. Run until Materials.", title,
-                       r.shot.frame_name));
-  }
-  if (channel == Channel::Lit && !r.light.light) {
-    refuse(r.light.reading ? "reading the light"
-                           : "No light chosen. Choose or open a panorama under Display.");
-  }
-  GBufferRenderer renderer(*r.device);
-  const Camera& camera = r.shot.capture->views[r.shot.view.value].camera;
-  const GBuffer g =
-      renderer.render(*residentOf(*r.device, *r.values.cloud, r.values.materials.get()), camera);
-  Image<vec3> lit;
-  if (channel == Channel::Lit) lit = shade(g, camera, *r.light.light, {.yaw_rad = r.light.yaw_rad});
+  refuseWhatIsNotThere(r, channel, lackOf(channel, scene));
   // A figure of a difference says nothing unless the light is that of the photograph.
-  const std::string light = channel == Channel::Lit
+  const std::string light = channel.needs == ChannelNeeds::MaterialsAndLight
                                 ? " · " + lightWords(r.light.name, r.light.yaw_rad).toStdString()
                                 : std::string();
-  return channelOf(g, lit, channel, fmt::format("Rendered {}{} · {}", title, light, r.shot.where));
+  const auto renderer = r.new_renderer();
+  renderer->load(scene);
+  Picture picture;
+  Progress progress;
+  const ChannelInfo asked[] = {channel, channelOf(kAlphaChannel)};
+  renderer->draw(r.shot.capture->views[r.shot.view.value].camera, asked, progress,
+                 [&](const RenderedPicture& drawn) {
+                   picture = pictureOf(channel, *drawn.channels[0].values, *drawn.channels[1].values,
+                                       fmt::format("Rendered {}{} · {}", channel.title, light, r.shot.where));
+                 });
+  return picture;
 }
 
 void addRenders(std::vector<PictureSource>& sources, const Shot& shot, const ProjectModel& model,
                 const PictureLight& light) {
   const FrameValues& values = model.values();
-  const Render render{shot, values, light, model.services().view_device};
-  for (int c = 0; c < kChannelCount; ++c) {
-    const auto channel = static_cast<Channel>(c);
-    const ChannelInfo& info = infoOf(channel);
+  const Render render{shot, values, light, model.services().new_renderer};
+  for (const ChannelInfo& channel : shownChannels()) {
     PictureIngredients made_of{
         .values = {shot.capture, values.cloud, values.materials}, .view = shot.view, .frame = shot.frame};
-    if (channel == Channel::Lit) {
+    if (channel.needs == ChannelNeeds::MaterialsAndLight) {
       made_of.values.push_back(light.light);
       made_of.yaw_rad = light.yaw_rad;
       made_of.reading = light.reading;
     }
-    sources.push_back({QString("render.") + info.name, QString("Rendered: ") + info.title, made_of,
+    sources.push_back({QString::fromStdString("render." + channel.id),
+                       QString("Rendered: ") + QString::fromStdString(channel.title), made_of,
                        [render, channel] { return renderedOf(render, channel); }, true});
   }
 }

@@ -8,7 +8,6 @@
 
 #include <vector>
 
-#include "core/render/deferred.h"
 #include "ui/project_model.h"
 #include "viewers/image/picture.h"
 #include "viewers/view_state.h"
@@ -26,16 +25,16 @@ struct PictureIngredients {
 };
 
 struct PictureSource {
-  QString id;     // stable: "photo", "mask", "render.lit", "map.ao"
+  QString id;     // stable: "photo", "mask", "render.relight", "map.ao"
   QString title;  // "Photograph"
   PictureIngredients made_of;
   PictureLoader loader;
   bool of_values = false;  // made of the model's values: what is said of these (stale) is true of it
 };
 
-// A light for the rendered "lit" picture; may be null, and then `reading` says whether it is on its way.
+// A light for the rendered "relight" picture; may be null, and then `reading` says whether it is on its way.
 struct PictureLight {
-  std::shared_ptr<const PreparedLight> light;
+  std::shared_ptr<const Environment> light;
   float yaw_rad = 0;
   bool reading = false;
   QString name = {};

@@ -12,6 +12,7 @@
 #include "core/base/progress.h"
 #include "core/pipeline/project.h"
 #include "core/render/device.h"
+#include "core/render/scene_renderer.h"
 
 namespace beam {
 
@@ -21,8 +22,9 @@ using CaptureCheck =
 
 struct StudioServices {
   std::shared_ptr<const PipelineSetup> pipeline;
-  // Two devices: a job and a view do not wait for each other.
-  std::shared_ptr<ComputeDevice> job_device, view_device;
+  std::shared_ptr<ComputeDevice> job_device;
+  // Of views: on another device than jobs, so that neither waits for the other.
+  SceneRendererFactory new_renderer;
   // Writes the sample capture into a folder that does not exist; empty: none comes with the program.
   std::function<void(const std::filesystem::path&, Progress&)> make_sample;
   CaptureCheck check_capture = {};  // empty: pictures are not looked at when a project is opened

@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/method/score_views.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/scene/frame_views.h"
 #include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
@@ -94,12 +95,12 @@ Evaluated scoreAgainstTruth(const EvaluateFlags& flags, const Project& project, 
     return e;
   }
   const ScratchFolder scratch;
-  const auto device = makeDevice(flags.device);
+  const std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   const auto sequence = sequenceOf(project, Shows::Solved);
   const RenderRequest request = requestFor(*sequence, project.capture(), truth, flags.frames, scratch.path());
   {
     Progress part = progress.part(0.5, "render");
-    renderChannels(*sequence, request, *device, part);
+    renderChannels(*sequence, request, *newCpuSceneRenderer(device), part);
   }
   {
     Progress part = progress.part(0.3, "score");

@@ -10,6 +10,7 @@
 #include "app/cli/selection.h"
 #include "core/base/error.h"
 #include "core/io/splat_ply.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/scene/transform.h"
 #include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
@@ -50,9 +51,9 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
   request.world_frame = wantsWorld(flags.frame_of);
   request.out = flags.out;
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
-  const auto device = makeDevice(flags.device);
+  std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
-  renderChannels(*sequence, request, *device, progress);
+  renderChannels(*sequence, request, *newCpuSceneRenderer(std::move(device)), progress);
   context.console.endProgress();
   context.console.print(fmt::format("wrote {} of {} camera{} and {} frame{} to \"{}\"",
                                     fmt::join(flags.channels, ", "), request.views.size(),
@@ -105,9 +106,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("render", "Write pictures of solved frames: colour, materials, geometry, relit");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command
-      ->add_option("--channels", flags->channels,
-                   fmt::format("Some of {}", fmt::join(renderChannelNames(), ", ")))
+  command->add_option("--channels", flags->channels, fmt::format("Some of {}", fmt::join(channelIds(), ", ")))
       ->delimiter(',');
   command->add_option("--cameras", flags->cameras, "test, train, all or camera names");
   command->add_option("--frames", flags->frames,

@@ -19,6 +19,12 @@ double numberOf(const QCommandLineParser& parser, const QString& name) {
   return value;
 }
 
+QString shownIds() {
+  QStringList ids;
+  for (const ChannelInfo& channel : shownChannels()) ids << QString::fromStdString(channel.id);
+  return ids.join(", ");
+}
+
 void readLook(const QCommandLineParser& parser, StudioArguments& a) {
   a.look_given = parser.isSet("theme") || parser.isSet("text-size");
   if (parser.isSet("theme")) {
@@ -47,8 +53,8 @@ StudioArguments parseArguments(QCoreApplication& application) {
                            : QCommandLineOption(name, help));
   };
   add("view", "View to start with: splat, image or scene.", "NAME", "splat");
-  add("channel", "Channel of the splat view: lit, radiance, base_color, ao, roughness, normal or depth.",
-      "NAME", "lit");
+  add("channel", ("Channel of the splat view: one of " + shownIds() + ".").toUtf8().constData(), "NAME",
+      kRelightChannel);
   add("camera", "Camera to look through.", "NAME");
   add("frame", "Frame to show, by the capture's name.", "NAME");
   add("environment", "Panorama to light with.", "FILE");
@@ -93,10 +99,9 @@ StudioArguments parseArguments(QCoreApplication& application) {
   const auto view = studioViewNamed(parser.value("view").toStdString());
   if (!view) refuse("--view expects splat, image or scene, found \"" + parser.value("view") + "\"");
   a.view = *view;
-  const auto channel = channelNamed(parser.value("channel").toStdString());
-  if (!channel)
-    refuse("--channel expects lit, radiance, base_color, ao, roughness, normal or depth, found \"" +
-           parser.value("channel") + "\"");
+  const ChannelInfo* channel = findChannel(parser.value("channel").toStdString());
+  if (!channel || channel->key == 0)
+    refuse("--channel expects one of " + shownIds() + ", found \"" + parser.value("channel") + "\"");
   a.channel = *channel;
   a.camera = parser.value("camera");
   a.frame = parser.value("frame");

@@ -17,7 +17,7 @@ struct StudioArguments {
   QString path;  // capture or project; empty: start page
   DeviceChoice device;
   StudioView view = StudioView::Splat;
-  Channel channel = Channel::Lit;
+  ChannelInfo channel = channelOf(kRelightChannel);
   QString camera, frame, environment, left, right, select, screenshot;
   double yaw_deg = 0;
   double photo = -1;  // opacity over the camera's render; < 0: as it comes

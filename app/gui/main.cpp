@@ -12,6 +12,7 @@
 #include "app/services.h"
 #include "core/base/error.h"
 #include "core/io/capture_check.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/sample/make_sample.h"
 #include "ui/theme.h"
 #include "viewers/gl/functions.h"
@@ -42,7 +43,8 @@ class StudioApplication final : public QApplication {
   std::string told_;
 };
 
-constexpr int kSampleFrames = 4;  // enough to play, and to see the tracking
+constexpr std::size_t kViewSizes = 2;  // of the moving and of the resting picture
+constexpr int kSampleFrames = 4;       // enough to play, and to see the tracking
 
 // Without a picture to take there is a person before the screen; say it in a window, too.
 int report(const beam::Error& error, bool person) {
@@ -65,7 +67,7 @@ int runStudio(StudioApplication& application) {
     beam::StudioServices studio{
         .pipeline = services.pipeline,
         .job_device = beam::makeDevice(arguments.device),
-        .view_device = beam::makeDevice(arguments.device),
+        .new_renderer = beam::cpuSceneRenderers(beam::makeDevice(arguments.device), kViewSizes),
         .make_sample =
             [](const std::filesystem::path& folder, beam::Progress& progress) {
               beam::makeSample(folder, {.frames = kSampleFrames}, progress);

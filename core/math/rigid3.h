@@ -9,6 +9,8 @@ namespace beam {
 struct Rigid3 {
   dquat rotation = dquat(1, 0, 0, 0);  // unit
   dvec3 translation_m = dvec3(0);
+
+  bool operator==(const Rigid3&) const = default;
 };
 
 inline dvec3 operator*(const Rigid3& a_from_b, const dvec3& x_in_b) {

@@ -1,38 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/deferred.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
-#include "core/render/prepared_light.h"
 
 namespace beam {
 namespace {
 
 constexpr float kVisible = 1 / 255.0f;
+constexpr float kOpaque = 0.5f;  // with less, depth says nothing
 constexpr float kDiffuseShare =
     0.955f;                          // k_d: what (1 - F) leaves, averaged over the hemisphere (methods 7.2)
 constexpr float kDegenerate = 0.1f;  // |sum w n| below this share of alpha is no normal (methods 7.1)
 enum Extra { kBaseColor = 0, kOcclusion = 3, kRoughness = 4, kExtraCount = 5 };
 
-vec3 triple(const Planes& p, std::size_t i) { return {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]}; }
+constexpr float kLeastRoughness = 0.04f;  // a mirror has no lobe
 
-dvec3 rayThrough(const Camera& camera, std::size_t pixel) {
-  const std::size_t x = pixel % camera.width, y = pixel / camera.width;
-  return rayOf(camera.intrinsics, {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
+vec3 triple(const Planes& p, std::size_t i, int first = 0) {
+  return {p.plane(first)[i], p.plane(first + 1)[i], p.plane(first + 2)[i]};
+}
+
+void put(Planes& p, std::size_t i, vec3 v) {
+  for (int c = 0; c < 3; ++c) p.plane(c)[i] = v[c];
+}
+
+// Room for `channels` planes of the view's size; the values are whatever they were.
+void shape(const Planes& like, int channels, Planes& out) {
+  if (out.width == like.width && out.height == like.height && out.channels == channels) return;
+  out = Planes(like.width, like.height, channels);
+}
+
+// Rays of a camera's pixels.
+class Rays {
+ public:
+  explicit Rays(const Camera& camera)
+      : camera_(camera), world_from_camera_(glm::conjugate(camera.camera_from_world.rotation)) {}
+  dvec3 through(int x, int y) const { return rayOf(camera_.intrinsics, {x + 0.5, y + 0.5}); }
+  vec3 toEye(int x, int y) const { return vec3(-glm::normalize(world_from_camera_ * through(x, y))); }
+  const dquat& worldFromCamera() const { return world_from_camera_; }
+
+ private:
+  const Camera& camera_;
+  dquat world_from_camera_;
+};
+
+// body(x, y, pixel) for every pixel, in parallel by rows.
+template <class Body>
+void forPixels(int width, int height, Body&& body) {
+  parallelFor(height, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      for (int x = 0; x < width; ++x) body(x, static_cast<int>(y), y * width + x);
+    }
+  });
 }
 
 // Unit, world; the direction to the camera where the blended normals cancel out.
-vec3 resolveNormal(vec3 blended, float alpha, const Camera& camera, std::size_t pixel) {
-  const dquat world_from_camera = glm::conjugate(camera.camera_from_world.rotation);
+vec3 resolveNormal(vec3 blended, float alpha, const Rays& rays, int x, int y) {
   const float length = glm::length(blended);
   const dvec3 n =
-      length < kDegenerate * alpha ? -glm::normalize(rayThrough(camera, pixel)) : dvec3(blended / length);
-  return vec3(glm::normalize(world_from_camera * n));
+      length < kDegenerate * alpha ? -glm::normalize(rays.through(x, y)) : dvec3(blended / length);
+  return vec3(glm::normalize(rays.worldFromCamera() * n));
 }
+
+float clampedShare(float v) { return std::clamp(v, 0.0f, 1.0f); }
 
 struct Surface {
   vec3 base_color;
@@ -52,60 +88,144 @@ float specularOcclusion(float n_dot_v, float occlusion, float roughness) {
   return std::clamp(std::pow(n_dot_v + occlusion, power) - 1 + occlusion, 0.0f, 1.0f);
 }
 
-vec3 radiance(const Surface& s, const PreparedLight& light, const ShadeOptions& o) {
+// The surface that values x alpha were blended of.
+Surface surfaceOf(vec3 base_color, float occlusion, float roughness, float alpha, vec3 normal, vec3 to_eye) {
+  return {.base_color = glm::clamp(base_color / alpha, 0.0f, 1.0f),
+          .occlusion = clampedShare(occlusion / alpha),
+          .roughness = std::clamp(roughness / alpha, kLeastRoughness, 1.0f),
+          .normal = normal,
+          .to_eye = to_eye};
+}
+
+vec3 radiance(const Surface& s, const PreparedLight& light, const LightTurn& turn, const ShadeOptions& o) {
   const float n_dot_v = std::clamp(glm::dot(s.normal, s.to_eye), 1e-3f, 1.0f);
   const vec3 occlusion = o.multibounce_ao ? multibounce(s.occlusion, s.base_color) : vec3(s.occlusion);
-  const vec3 diffuse = kDiffuseShare / kPi * s.base_color * light.irradiance(s.normal, o.yaw_rad) * occlusion;
+  const vec3 diffuse = kDiffuseShare / kPi * s.base_color * irradiance(light, turn(s.normal)) * occlusion;
   const vec3 mirror = glm::normalize(2 * glm::dot(s.normal, s.to_eye) * s.normal - s.to_eye);
   const vec2 ab = splitSum(n_dot_v, s.roughness);
   const float shadow = o.specular_occlusion ? specularOcclusion(n_dot_v, s.occlusion, s.roughness) : 1.0f;
-  return diffuse + shadow * (kF0 * ab.x + ab.y) * light.prefiltered(mirror, s.roughness, o.yaw_rad);
+  return diffuse + shadow * (kF0 * ab.x + ab.y) * prefiltered(light, turn(mirror), s.roughness);
 }
 
 }  // namespace
 
-GBufferRenderer::GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes)
-    : rasterizers_(device, kept_sizes) {}
+void RasterView::radiance(Planes& out) const { out = images_.color; }
 
-GBuffer GBufferRenderer::render(const ResidentScene& scene, const Camera& camera) {
-  static const std::vector<std::string> kMaterialNames = {kBaseColorName, kOcclusionName, kRoughnessName};
-  const bool materials = std::all_of(kMaterialNames.begin(), kMaterialNames.end(),
-                                     [&](const std::string& name) { return scene.has(name); });
-  Rasterizer& rasterizer = rasterizers_.of({.width = camera.width,
-                                            .height = camera.height,
-                                            .color = true,
-                                            .geometry = true,
-                                            .extra_channels = materials ? kExtraCount : 0});
-  RasterImages& images = images_;
-  rasterizer.forward(scene, materials ? kMaterialNames : std::vector<std::string>(), camera, vec3(0), images);
+void RasterView::alpha(Planes& out) const { out = images_.alpha; }
 
-  const int w = camera.width, h = camera.height;
+void RasterView::depth(Planes& out) const {
+  shape(images_.alpha, 1, out);
+  forPixels(out.width, out.height, [&](int, int, std::size_t i) {
+    out.values[i] = images_.alpha.values[i] >= kOpaque ? images_.median_depth.values[i] : 0;
+  });
+}
+
+void RasterView::normal(Planes& out) const {
+  shape(images_.alpha, 3, out);
+  const Rays rays(camera_);
+  forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
+    const float alpha = images_.alpha.values[i];
+    put(out, i, alpha >= kVisible ? resolveNormal(triple(images_.normal, i), alpha, rays, x, y) : vec3(0));
+  });
+}
+
+void RasterView::requireMaterials(const char* what) const {
+  if (!materials_) throw Error(Error::Kind::Bug, fmt::format("{}: the scene has no materials", what));
+}
+
+// Clamped after blending, not per Gaussian (methods 5.10).
+void RasterView::share(int channel, int count, Planes& out) const {
+  requireMaterials("materials of a view");
+  shape(images_.alpha, count, out);
+  parallelFor(out.values.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    const float* in = extra(channel);
+    for (std::size_t i = begin; i < end; ++i) out.values[i] = clampedShare(in[i]);
+  });
+}
+
+void RasterView::baseColor(Planes& out) const { share(kBaseColor, 3, out); }
+void RasterView::occlusion(Planes& out) const { share(kOcclusion, 1, out); }
+void RasterView::roughness(Planes& out) const { share(kRoughness, 1, out); }
+
+void RasterView::attribute(std::string_view name, Planes& out) const {
+  const auto found =
+      std::find_if(further_.begin(), further_.end(), [&](const Further& f) { return f.name == name; });
+  if (found == further_.end())
+    throw Error(Error::Kind::Bug, fmt::format("attribute \"{}\" was not drawn", name));
+  shape(images_.alpha, found->channels, out);
+  std::copy_n(extra(found->first), out.values.size(), out.values.begin());
+}
+
+void RasterView::relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const {
+  requireMaterials("relit");
+  shape(images_.alpha, 3, out);
+  const Rays rays(camera_);
+  const LightTurn turn(light, options.yaw_rad);
+  forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
+    const float alpha = images_.alpha.values[i];
+    if (alpha < kVisible) return put(out, i, vec3(0));
+    const vec3 base_color = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
+    const Surface s =
+        surfaceOf(base_color, clampedShare(extra(kOcclusion)[i]), clampedShare(extra(kRoughness)[i]), alpha,
+                  resolveNormal(triple(images_.normal, i), alpha, rays, x, y), rays.toEye(x, y));
+    put(out, i, options.exposure * alpha * beam::radiance(s, light, turn, options));
+  });
+}
+
+GBuffer RasterView::gbuffer() const {
+  const int w = images_.alpha.width, h = images_.alpha.height;
   GBuffer g;
   g.alpha = Image<float>(w, h);
   g.depth_m = Image<float>(w, h);
   g.normal_world = Image<vec3>(w, h);
   g.radiance = Image<vec3>(w, h, vec3(0), Encoding::Srgb);
-  if (materials) {
+  if (materials_) {
     g.base_color = Image<vec3>(w, h, vec3(0), Encoding::Linear);
     g.ambient_occlusion = Image<float>(w, h);
     g.roughness = Image<float>(w, h);
   }
-  parallelFor(h, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * w; i < end * w; ++i) {
-      const float alpha = images.alpha.values[i];
-      g.alpha.pixels[i] = alpha;
-      g.radiance.pixels[i] = triple(images.color, i);
-      if (alpha >= 0.5f) g.depth_m.pixels[i] = images.median_depth.values[i];
-      if (alpha >= kVisible)
-        g.normal_world.pixels[i] = resolveNormal(triple(images.normal, i), alpha, camera, i);
-      if (!materials) continue;
-      // Clamped after blending, not per Gaussian (methods 5.10).
-      g.base_color.pixels[i] = glm::clamp(triple(images.extra, i), 0.0f, 1.0f);
-      g.ambient_occlusion.pixels[i] = std::clamp(images.extra.plane(kOcclusion)[i], 0.0f, 1.0f);
-      g.roughness.pixels[i] = std::clamp(images.extra.plane(kRoughness)[i], 0.0f, 1.0f);
-    }
+  const Rays rays(camera_);
+  forPixels(w, h, [&](int x, int y, std::size_t i) {
+    const float alpha = images_.alpha.values[i];
+    g.alpha.pixels[i] = alpha;
+    g.radiance.pixels[i] = triple(images_.color, i);
+    if (alpha >= kOpaque) g.depth_m.pixels[i] = images_.median_depth.values[i];
+    if (alpha >= kVisible)
+      g.normal_world.pixels[i] = resolveNormal(triple(images_.normal, i), alpha, rays, x, y);
+    if (!materials_) return;
+    g.base_color.pixels[i] = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
+    g.ambient_occlusion.pixels[i] = clampedShare(extra(kOcclusion)[i]);
+    g.roughness.pixels[i] = clampedShare(extra(kRoughness)[i]);
   });
   return g;
+}
+
+GBufferRenderer::GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes)
+    : rasterizers_(device, kept_sizes) {}
+
+const RasterView& GBufferRenderer::draw(const ResidentScene& scene, const Camera& camera,
+                                        const std::vector<std::string>& further) {
+  static const std::vector<std::string> kMaterialNames = {kBaseColorName, kOcclusionName, kRoughnessName};
+  view_.camera_ = camera;
+  view_.materials_ = std::all_of(kMaterialNames.begin(), kMaterialNames.end(),
+                                 [&](const std::string& name) { return scene.has(name); });
+  std::vector<std::string> names = view_.materials_ ? kMaterialNames : std::vector<std::string>();
+  int count = view_.materials_ ? kExtraCount : 0;
+  view_.further_.clear();
+  for (const AttributeInfo& info : scene.attributes()) {
+    if (std::find(further.begin(), further.end(), info.name) == further.end()) continue;
+    view_.further_.push_back({info.name, count, info.channels});
+    names.push_back(info.name);
+    count += info.channels;
+  }
+  rasterizers_
+      .of({.width = camera.width,
+           .height = camera.height,
+           .color = true,
+           .geometry = true,
+           .extra_channels = count})
+      .forward(scene, names, camera, vec3(0), view_.images_);
+  return view_;
 }
 
 Image<vec3> shade(const GBuffer& g, const Camera& camera, const PreparedLight& light,
@@ -114,19 +234,15 @@ Image<vec3> shade(const GBuffer& g, const Camera& camera, const PreparedLight& l
     throw Error(Error::Kind::Bug,
                 "shade: expected a G-buffer with base colour, ambient occlusion and roughness");
   }
-  const dquat world_from_camera = glm::conjugate(camera.camera_from_world.rotation);
+  const Rays rays(camera);
+  const LightTurn turn(light, options.yaw_rad);
   Image<vec3> out(g.alpha.width, g.alpha.height, vec3(0), Encoding::Linear);
-  parallelFor(out.height, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * out.width; i < end * out.width; ++i) {
-      const float alpha = g.alpha.pixels[i];
-      if (alpha < kVisible) continue;
-      const Surface s{.base_color = glm::clamp(g.base_color.pixels[i] / alpha, 0.0f, 1.0f),
-                      .occlusion = std::clamp(g.ambient_occlusion.pixels[i] / alpha, 0.0f, 1.0f),
-                      .roughness = std::clamp(g.roughness.pixels[i] / alpha, 0.04f, 1.0f),
-                      .normal = g.normal_world.pixels[i],
-                      .to_eye = vec3(-glm::normalize(world_from_camera * rayThrough(camera, i)))};
-      out.pixels[i] = options.exposure * alpha * radiance(s, light, options);
-    }
+  forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
+    const float alpha = g.alpha.pixels[i];
+    if (alpha < kVisible) return;
+    const Surface s = surfaceOf(g.base_color.pixels[i], g.ambient_occlusion.pixels[i], g.roughness.pixels[i],
+                                alpha, g.normal_world.pixels[i], rays.toEye(x, y));
+    out.pixels[i] = options.exposure * alpha * radiance(s, light, turn, options);
   });
   return out;
 }

@@ -3,45 +3,16 @@
 // (methods 7.2: SH irradiance, split-sum specular, AO, specular occlusion). Later shaders must match it.
 #pragma once
 
-#include <array>
-#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/render/device.h"
+#include "core/render/prepared_light.h"
 #include "core/render/rasterizer_cache.h"
-#include "core/scene/environment.h"
-#include "core/scene/gaussian_cloud.h"
 #include "core/scene/gbuffer.h"
 
 namespace beam {
-
-// G-buffer of a view: everything that the scene's attributes can give, materials where every instance has
-// some. Keeps its rasterisers between calls of `kept_sizes` sizes.
-class GBufferRenderer {
- public:
-  explicit GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes = 1);
-  GBuffer render(const ResidentScene& scene, const Camera& camera);
-
- private:
-  RasterizerCache rasterizers_;
-  RasterImages images_;
-};
-
-// A panorama prepared for shading: irradiance SH, GGX-prefiltered levels, split-sum table. Preparing takes a
-// moment (parallel); shading many views with it does not. Turning the light (yaw) needs no new preparation.
-class PreparedLight {
- public:
-  explicit PreparedLight(const Environment& environment);
-  ~PreparedLight();
-  PreparedLight(PreparedLight&&) noexcept;
-  PreparedLight& operator=(PreparedLight&&) noexcept;
-  vec3 irradiance(vec3 normal, float yaw_rad) const;  // E(n)
-  vec3 prefiltered(vec3 direction, float roughness, float yaw_rad) const;
-  vec3 background(vec3 direction, float yaw_rad) const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
 
 struct ShadeOptions {
   float yaw_rad = 0;               // turns the light about +Y
@@ -50,7 +21,58 @@ struct ShadeOptions {
   bool specular_occlusion = true;  // Lagarde (methods 7.2)
 };
 
-// Linear relit radiance x alpha (premultiplied, black background).
+// A view that was rasterised, and what each of its pixels holds. Planes are resized as needed and written
+// whole, so that their memory can serve picture after picture. The three of materials and relit() throw
+// Error{Bug} unless hasMaterials().
+class RasterView {
+ public:
+  const Camera& camera() const { return camera_; }
+  bool hasMaterials() const { return materials_; }
+  void radiance(Planes& out) const;  // sRGB-encoded, composited on black
+  void alpha(Planes& out) const;
+  void depth(Planes& out) const;   // median z, metres, 0 where alpha < 0.5
+  void normal(Planes& out) const;  // unit, world, 0 where alpha < 1/255
+  void baseColor(Planes& out) const;
+  void occlusion(Planes& out) const;
+  void roughness(Planes& out) const;
+  // A further attribute, value x alpha as it was blended; Error{Bug} for one that was not drawn.
+  void attribute(std::string_view name, Planes& out) const;
+  // Linear relit radiance x alpha, premultiplied on black.
+  void relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const;
+  GBuffer gbuffer() const;
+
+ private:
+  friend class GBufferRenderer;
+  const float* extra(int channel) const { return images_.extra.plane(channel); }
+  void share(int channel, int count, Planes& out) const;
+  void requireMaterials(const char* what) const;
+
+  Camera camera_;
+  bool materials_ = false;
+  struct Further {
+    std::string name;
+    int first = 0, channels = 1;  // of the extra planes
+  };
+  std::vector<Further> further_;
+  RasterImages images_;
+};
+
+// Draws everything that the scene's attributes can give of a view, materials where every instance has some.
+// Keeps its rasterisers between calls of `kept_sizes` sizes, and the last view.
+class GBufferRenderer {
+ public:
+  explicit GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes = 1);
+  // Valid until the next call. `further`: names of attributes of the scene that are drawn as well.
+  const RasterView& draw(const ResidentScene& scene, const Camera& camera,
+                         const std::vector<std::string>& further = {});
+  GBuffer render(const ResidentScene& scene, const Camera& camera) { return draw(scene, camera).gbuffer(); }
+
+ private:
+  RasterizerCache rasterizers_;
+  RasterView view_;
+};
+
+// Linear relit radiance x alpha (premultiplied, black background). Throws Error{Bug} without materials.
 Image<vec3> shade(const GBuffer& gbuffer, const Camera& camera, const PreparedLight& light,
                   const ShadeOptions& options);
 

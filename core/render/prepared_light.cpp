@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
 #include "core/math/color.h"
 #include "core/math/sampling.h"
-#include "core/render/deferred.h"
 
 namespace beam {
 namespace {
@@ -37,27 +37,6 @@ vec2 integrateSplitSum(float n_dot_v, float roughness) {
     sum += dvec2((1 - fresnel) * g, fresnel * g);
   }
   return vec2(sum / static_cast<double>(kLutSamples));
-}
-
-// Rows follow the roughness, columns the square root of n.v: most changes at grazing angles.
-const std::vector<vec2>& splitSumTable() {
-  static const std::vector<vec2> table = [] {
-    std::vector<vec2> t(kLutSize * kLutSize);
-    for (int y = 0; y < kLutSize; ++y) {
-      for (int x = 0; x < kLutSize; ++x) {
-        const float c = static_cast<float>(x) / (kLutSize - 1);
-        t[y * kLutSize + x] =
-            integrateSplitSum(std::max(c * c, 1e-4f), static_cast<float>(y) / (kLutSize - 1));
-      }
-    }
-    return t;
-  }();
-  return table;
-}
-
-vec3 turned(vec3 d, float yaw) {
-  const float c = std::cos(yaw), s = std::sin(yaw);
-  return {c * d.x + s * d.z, d.y, -s * d.x + c * d.z};
 }
 
 // Directions and solid angles of a panorama's texels, column by column of the same row together.
@@ -159,13 +138,28 @@ Image<vec3> prefilteredLevel(const Image<vec3>& panorama, float roughness) {
 
 }  // namespace
 
+// The square root of n.v: most changes at grazing angles.
+const Image<vec2>& splitSumTable() {
+  static const Image<vec2> table = [] {
+    Image<vec2> t(kLutSize, kLutSize);
+    for (int y = 0; y < kLutSize; ++y) {
+      for (int x = 0; x < kLutSize; ++x) {
+        const float c = static_cast<float>(x) / (kLutSize - 1);
+        t(x, y) = integrateSplitSum(std::max(c * c, 1e-4f), static_cast<float>(y) / (kLutSize - 1));
+      }
+    }
+    return t;
+  }();
+  return table;
+}
+
 vec2 splitSum(float n_dot_v, float roughness) {
-  const std::vector<vec2>& table = splitSumTable();
+  const Image<vec2>& table = splitSumTable();
   const float x = std::sqrt(std::clamp(n_dot_v, 0.0f, 1.0f)) * (kLutSize - 1);
   const float y = std::clamp(roughness, 0.0f, 1.0f) * (kLutSize - 1);
   const int x0 = std::min(static_cast<int>(x), kLutSize - 2),
             y0 = std::min(static_cast<int>(y), kLutSize - 2);
-  const vec2* row = table.data() + y0 * kLutSize + x0;
+  const vec2* row = table.pixels.data() + y0 * kLutSize + x0;
   return glm::mix(glm::mix(row[0], row[1], x - x0), glm::mix(row[kLutSize], row[kLutSize + 1], x - x0),
                   y - y0);
 }
@@ -217,8 +211,7 @@ Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min
   return out;
 }
 
-vec3 lookUp(const Image<vec3>& r, vec3 direction) {
-  const vec2 uv = latLongFromDirection(direction);
+vec3 lookUp(const Image<vec3>& r, vec2 uv) {
   const float x = uv.x * r.width - 0.5f, y = std::clamp(uv.y * r.height - 0.5f, 0.0f, r.height - 1.0f);
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(y),
             y1 = std::min(y0 + 1, r.height - 1);
@@ -227,53 +220,62 @@ vec3 lookUp(const Image<vec3>& r, vec3 direction) {
                   y - y0);
 }
 
-struct PreparedLight::State {
-  Image<vec3> radiance;      // gain applied, own yaw not
-  float yaw_rad = 0;         // the panorama's own
-  std::array<vec3, 9> sh{};  // irradiance
-  Image<vec3> cosine_map;    // irradiance, where SH would not do; else empty
-  std::array<Image<vec3>, kLevels> levels;
-};
-
-PreparedLight::PreparedLight(const Environment& environment) : state_(std::make_unique<State>()) {
-  State& s = *state_;
-  s.radiance = environment.radiance;
-  for (vec3& p : s.radiance.pixels) p *= environment.gain;
-  s.yaw_rad = environment.yaw_rad;
-  s.sh = irradianceSh(Environment{s.radiance});
+PreparedLight prepareLight(const Environment& environment) {
+  PreparedLight light;
+  light.radiance = environment.radiance;
+  for (vec3& p : light.radiance.pixels) p *= environment.gain;
+  light.yaw_rad = environment.yaw_rad;
+  light.irradiance_sh = irradianceSh(Environment{light.radiance});
   Image<vec3> map =
-      convolvedPanorama(reducedPanorama(s.radiance, 128, 64), {128, 64}, 0.0f, [](float c) { return c; });
+      convolvedPanorama(reducedPanorama(light.radiance, 128, 64), {128, 64}, 0.0f, [](float c) { return c; });
   float worst = 0, mean = 0;
   for (std::size_t i = 0; i < map.pixels.size(); ++i) {
     map.pixels[i] *= kPi;
     const int x = static_cast<int>(i) % map.width, y = static_cast<int>(i) / map.width;
     const vec3 n = directionFromLatLong({(x + 0.5f) / map.width, (y + 0.5f) / map.height});
-    worst = std::max(worst, std::abs(luminance(map.pixels[i] - beam::irradiance(s.sh, n))));
+    worst = std::max(worst, std::abs(luminance(map.pixels[i] - irradiance(light.irradiance_sh, n))));
     mean += luminance(map.pixels[i]) / static_cast<float>(map.pixels.size());
   }
-  if (worst > kShTolerance * mean) s.cosine_map = std::move(map);
-  for (int i = 1; i < kLevels; ++i) s.levels[i] = prefilteredLevel(s.radiance, i / (kLevels - 1.0f));
+  if (worst > kShTolerance * mean) light.irradiance_map = std::move(map);
+  light.levels.resize(kLevels);
+  for (int i = 1; i < kLevels; ++i) light.levels[i] = prefilteredLevel(light.radiance, i / (kLevels - 1.0f));
+  return light;
 }
 
-PreparedLight::~PreparedLight() = default;
-PreparedLight::PreparedLight(PreparedLight&&) noexcept = default;
-PreparedLight& PreparedLight::operator=(PreparedLight&&) noexcept = default;
+LightTurn::LightTurn(const PreparedLight& light, float yaw_rad)
+    : cos_(std::cos(-yaw_rad - light.yaw_rad)), sin_(std::sin(-yaw_rad - light.yaw_rad)) {}
 
-vec3 PreparedLight::irradiance(vec3 normal, float yaw_rad) const {
-  const vec3 n = turned(normal, -yaw_rad - state_->yaw_rad);
-  return state_->cosine_map.empty() ? beam::irradiance(state_->sh, n) : lookUp(state_->cosine_map, n);
+vec3 irradiance(const PreparedLight& light, vec3 normal) {
+  return light.irradiance_map.empty() ? irradiance(light.irradiance_sh, normal)
+                                      : lookUp(light.irradiance_map, normal);
 }
 
-vec3 PreparedLight::prefiltered(vec3 direction, float roughness, float yaw_rad) const {
-  const vec3 d = turned(direction, -yaw_rad - state_->yaw_rad);
-  const float level = std::clamp(roughness, 0.0f, 1.0f) * (kLevels - 1);
-  const int below = std::min(static_cast<int>(level), kLevels - 2);
-  const Image<vec3>& sharp = below == 0 ? state_->radiance : state_->levels[below];
-  return glm::mix(lookUp(sharp, d), lookUp(state_->levels[below + 1], d), level - below);
+vec3 prefiltered(const PreparedLight& light, vec3 direction, float roughness) {
+  const int last = static_cast<int>(light.levels.size()) - 1;
+  const float level = std::clamp(roughness, 0.0f, 1.0f) * static_cast<float>(last);
+  const int below = std::min(static_cast<int>(level), last - 1);
+  const Image<vec3>& sharp = below == 0 ? light.radiance : light.levels[below];
+  const vec2 uv = latLongFromDirection(direction);
+  return glm::mix(lookUp(sharp, uv), lookUp(light.levels[below + 1], uv), level - static_cast<float>(below));
 }
 
-vec3 PreparedLight::background(vec3 direction, float yaw_rad) const {
-  return lookUp(state_->radiance, turned(direction, -yaw_rad - state_->yaw_rad));
+std::shared_ptr<const PreparedLight> PreparedLights::of(
+    const std::shared_ptr<const Environment>& environment) {
+  const auto found = [&]() -> std::shared_ptr<const PreparedLight> {
+    std::erase_if(all_, [](const auto& entry) { return entry.first.expired(); });
+    for (const auto& [known, light] : all_)
+      if (known.lock() == environment) return light;
+    return nullptr;
+  };
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto light = found()) return light;
+  }
+  auto light = std::make_shared<const PreparedLight>(prepareLight(*environment));
+  const std::lock_guard lock(mutex_);
+  if (auto other = found()) return other;  // of a thread that was faster
+  all_.emplace_back(environment, light);
+  return light;
 }
 
 }  // namespace beam

@@ -1,17 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pieces of a prepared light that shade() and its tests share: the split-sum table and lat-long
-// convolutions.
+// A panorama prepared for shading, as plain data that a shader can read as well: irradiance, radiance
+// filtered by roughness, split-sum table. Preparing takes a moment (parallel); shading many views does not.
+// Turning the light (yaw) needs no new preparation.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 #include "core/image/image.h"
+#include "core/scene/environment.h"
 
 namespace beam {
+
+// Panoramas in the axes of `radiance`, of which LightTurn tells where they are in the world. All are
+// scene-linear Rec.709, the environment's gain applied.
+struct PreparedLight {
+  Image<vec3> radiance;
+  float yaw_rad = 0;                    // the environment's own
+  std::array<vec3, 9> irradiance_sh{};  // as irradianceSh() gives it
+  Image<vec3> irradiance_map;           // 128 x 64; empty where SH hold all there is
+  // GGX-filtered for roughness i / (size - 1); the first is empty: `radiance` itself. Interpolated between.
+  std::vector<Image<vec3>> levels;
+};
+
+PreparedLight prepareLight(const Environment& environment);
+
+// From the world into the panorama's axes; `yaw_rad` comes on top of the environment's own.
+class LightTurn {
+ public:
+  LightTurn(const PreparedLight& light, float yaw_rad);
+  vec3 operator()(vec3 d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
+
+ private:
+  float cos_, sin_;
+};
+
+// Unit directions and normals in the panorama's axes.
+vec3 irradiance(const PreparedLight& light, vec3 normal);  // E(n)
+vec3 prefiltered(const PreparedLight& light, vec3 direction, float roughness);
+
+// Prepared lights by the identity of their environments, so that all who draw share them; forgotten with the
+// environment. Thread-safe.
+class PreparedLights {
+ public:
+  std::shared_ptr<const PreparedLight> of(const std::shared_ptr<const Environment>& environment);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::pair<std::weak_ptr<const Environment>, std::shared_ptr<const PreparedLight>>> all_;
+};
 
 // Split-sum factors (Karis 2013) of a smooth dielectric: integral of f_s (n.l) = F0 * x + y. `n_dot_v` in [0,
 // 1].
 vec2 splitSum(float n_dot_v, float roughness);
+// The table behind it: columns are the square root of n.v, rows the roughness, both from 0 to 1 on the middle
+// of the first and the last texel.
+const Image<vec2>& splitSumTable();
 
 // The panorama as another of width x height texels, each the mean over its solid angle; never enlarges.
 Image<vec3> reducedPanorama(const Image<vec3>& panorama, int width, int height);
@@ -20,7 +68,10 @@ Image<vec3> reducedPanorama(const Image<vec3>& panorama, int width, int height);
 Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min_cosine,
                               const std::function<float(float)>& kernel);
 
-// Bilinear look-up, unit direction; turns and gains are the caller's.
-vec3 lookUp(const Image<vec3>& panorama, vec3 direction);
+// Bilinear look-up at a texture position (scene/environment.h) or a unit direction.
+vec3 lookUp(const Image<vec3>& panorama, vec2 uv);
+inline vec3 lookUp(const Image<vec3>& panorama, vec3 direction) {
+  return lookUp(panorama, latLongFromDirection(direction));
+}
 
 }  // namespace beam

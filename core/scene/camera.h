@@ -10,12 +10,16 @@ namespace beam {
 
 struct Intrinsics {
   double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels; pixel (0, 0) has its centre at (0.5, 0.5)
+
+  bool operator==(const Intrinsics&) const = default;
 };
 
 struct Camera {
   Intrinsics intrinsics;
   int width = 0, height = 0;
   Rigid3 camera_from_world;
+
+  bool operator==(const Camera&) const = default;
 };
 
 // Throws Error{Data} naming `name` unless focal lengths and size are positive and everything is finite.

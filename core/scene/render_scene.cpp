@@ -39,12 +39,8 @@ RenderInstance instanceAt(const Performance& performance, double time_s, const S
   const FrameIndex index = frameAt(performance, *sequence, time_s);
   const std::shared_ptr<const GaussianFrame> frame = sequence->load(index);
   if (!frame) notThere(fmt::format("frame {} has no Gaussians", nameOf(*sequence, index)));
-  RenderInstance instance;
-  instance.cloud = {frame, &frame->cloud};
-  if (frame->materials) instance.materials = {frame, &*frame->materials};
-  instance.attributes = {frame, &frame->attributes};
+  RenderInstance instance = instanceOf(frame, sequence->renderMode());
   instance.world_from_cloud = performance.scene_from_performance;
-  instance.mode = sequence->renderMode();
   return instance;
 }
 
@@ -67,6 +63,15 @@ void addEnvironment(RenderScene& scene, const SceneSources& open) {
 }
 
 }  // namespace
+
+RenderInstance instanceOf(const std::shared_ptr<const GaussianFrame>& frame, RenderMode mode) {
+  RenderInstance instance;
+  instance.cloud = {frame, &frame->cloud};
+  if (frame->materials) instance.materials = {frame, &*frame->materials};
+  instance.attributes = {frame, &frame->attributes};
+  instance.mode = mode;
+  return instance;
+}
 
 FrameIndex frameAt(const Performance& performance, const GaussianSequence& sequence, double time_s) {
   const std::vector<FrameIndex> listed = parseFrameList(performance.frames, namesOf(sequence));

@@ -32,6 +32,9 @@ struct RenderInstance {
   bool operator==(const RenderInstance&) const = default;
 };
 
+// A frame where it was captured. `frame` is not null and stays alive with the instance.
+RenderInstance instanceOf(const std::shared_ptr<const GaussianFrame>& frame, RenderMode mode = {});
+
 // What a mesh has instead of one colour. An empty picture: the colour or roughness of its RenderMesh.
 struct MeshTextures {
   std::vector<vec2> uv;    // of each vertex; (0, 0) is the upper left corner of a picture

@@ -2,17 +2,18 @@
 #include "core/stages/render_channels.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/base/log.h"
-#include "core/image/planes.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/math/color.h"
-#include "core/render/deferred.h"
+#include "core/scene/channel.h"
+#include "core/scene/environment.h"
 #include "core/scene/transform.h"
 
 namespace beam {
@@ -20,70 +21,107 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Image<u8vec3> bytesOf(const Image<vec3>& image, bool encode) {
-  Image<u8vec3> out(image.width, image.height, u8vec3(0), Encoding::Srgb);
+Image<u8vec3> bytesOf(const Planes& color, bool encode) {
+  Image<u8vec3> out(color.width, color.height, u8vec3(0), Encoding::Srgb);
   for (std::size_t i = 0; i < out.pixels.size(); ++i) {
-    const vec3 c = glm::clamp(image.pixels[i], 0.0f, 1.0f);
-    for (int k = 0; k < 3; ++k) out.pixels[i][k] = byteOf(encode ? srgbFromLinear(c[k]) : c[k]);
+    for (int k = 0; k < 3; ++k) {
+      const float c = std::clamp(color.plane(k)[i], 0.0f, 1.0f);
+      out.pixels[i][k] = byteOf(encode ? srgbFromLinear(c) : c);
+    }
   }
   return out;
 }
 
-// A turn leaves lengths as they are.
-Planes inUnit(Planes lengths_m, const Similarity3& frame_from_world) {
-  if (frame_from_world.scale == 1) return lengths_m;
-  for (float& v : lengths_m.values) v = static_cast<float>(frame_from_world.scale * v);
-  return lengths_m;
+Image<std::uint8_t> bytesOf(const Planes& shares) {
+  Image<std::uint8_t> out(shares.width, shares.height);
+  for (std::size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = byteOf(shares.values[i]);
+  return out;
 }
 
-bool needsMaterials(const std::string& channel) {
-  return channel == "relight" || channel == "base_color" || channel == "ao" || channel == "roughness";
+// Values of world axes and metres as the frame of the files has them. A turn leaves lengths as they are.
+Planes inFrame(const ChannelInfo& channel, const Planes& values, const Similarity3& frame_from_world) {
+  Planes out = values;
+  if (channel.quantity == Quantity::Direction) {
+    for (std::size_t i = 0; i < out.planeSize(); ++i) {
+      const dvec3 v =
+          frame_from_world.rotation * dvec3(values.plane(0)[i], values.plane(1)[i], values.plane(2)[i]);
+      for (int c = 0; c < 3; ++c) out.plane(c)[i] = static_cast<float>(v[c]);
+    }
+  } else if (channel.quantity == Quantity::Length && frame_from_world.scale != 1) {
+    for (float& v : out.values) v = static_cast<float>(frame_from_world.scale * v);
+  }
+  return out;
+}
+
+void writeChannel(const fs::path& file, const ChannelInfo& channel, const Planes& values,
+                  const Similarity3& frame_from_world) {
+  const bool three = componentsOf(channel) == 3;
+  if (channel.file == FileForm::Png) {
+    if (three)
+      writePng(file, bytesOf(values, channel.encoding == Encoding::Linear));
+    else
+      writePng(file, bytesOf(values));
+    return;
+  }
+  const bool half = channel.file == FileForm::HalfExr;
+  writeExr(file, inFrame(channel, values, frame_from_world),
+           three ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"},
+           half ? ExrPrecision::Half : ExrPrecision::Float);
 }
 
 class ChannelWriter {
  public:
-  ChannelWriter(const GaussianSequence& sequence, const RenderRequest& request, ComputeDevice& device)
-      : sequence_(sequence), request_(request), device_(device), renderer_(device) {
+  ChannelWriter(const GaussianSequence& sequence, const RenderRequest& request, SceneRenderer& renderer)
+      : sequence_(sequence), request_(request), renderer_(renderer) {
     if (!request.world_frame) frame_from_world_ = sequence.captureFromWorld();
-    if (!wants("relight")) return;
+    for (const std::string& id : request.channels) {
+      if (id == kMeshChannel)
+        mesh_ = true;
+      else if (id == kRelightChannel)
+        relit_ = &channelOf(id);
+      else
+        drawn_.push_back(channelOf(id));
+    }
+    if (!relit_) return;
     for (const fs::path& file : request.environments) {
-      lights_.push_back({file.stem().string(), PreparedLight(makeEnvironment(readRadiance(file)))});
+      lights_.push_back({std::string(kRelightChannel) + "_" + file.stem().string(),
+                         std::make_shared<const Environment>(makeEnvironment(readRadiance(file)))});
     }
   }
 
   void frame(FrameIndex frame, Progress& progress) {
     const std::string& name = nameOf(sequence_, frame);
-    if (wants("mesh")) mesh(frame, name);
-    const bool pictures = std::any_of(request_.channels.begin(), request_.channels.end(),
-                                      [](const auto& c) { return c != "mesh"; });
-    if (!pictures) return progress.step(static_cast<std::int64_t>(request_.views.size()));
+    if (mesh_) mesh(frame, name);
+    if (drawn_.empty() && lights_.empty())
+      return progress.step(static_cast<std::int64_t>(request_.views.size()));
     const std::shared_ptr<const GaussianFrame> result = sequence_.load(frame);
     if (!result)
       throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", name));
     if (result->interpolated) logInfo("frame {} is interpolated", name);
-    for (const std::string& channel : request_.channels) {
-      if (!needsMaterials(channel) || result->materials) continue;
-      throw Error(
-          Error::Kind::Data,
-          fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, channel));
-    }
-    if (request_.views.empty()) return;
-    const auto resident = residentOf(device_, *result);
+    RenderScene scene;
+    scene.instances = {instanceOf(result, sequence_.renderMode())};
+    requireMaterials(*result, name);
     for (const View& view : request_.views) {
-      picture(*resident, view, name);
+      pictures(scene, view, name, progress);
       progress.step();
     }
   }
 
  private:
-  bool wants(const std::string& channel) const {
-    return std::find(request_.channels.begin(), request_.channels.end(), channel) != request_.channels.end();
+  void requireMaterials(const GaussianFrame& frame, const std::string& name) const {
+    for (const std::string& id : request_.channels) {
+      if (!needsMaterials(channelOf(id)) || frame.materials) continue;
+      throw Error(
+          Error::Kind::Data,
+          fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, id));
+    }
   }
 
-  fs::path file(const std::string& channel, const std::string& camera, const std::string& name) const {
-    const fs::path folder = request_.out / channel / camera;
-    fs::create_directories(folder);
-    return folder / name;
+  fs::path file(const std::string& folder, const std::string& camera, const std::string& name,
+                const ChannelInfo& channel) const {
+    const fs::path parent = request_.out / folder / camera;
+    fs::create_directories(parent);
+    return parent / fmt::format("{}.{}", name, extensionOf(channel.file));
   }
 
   void mesh(FrameIndex frame, const std::string& name) const {
@@ -91,76 +129,73 @@ class ChannelWriter {
     if (!m && sequence_.content(frame).interpolated)
       return logInfo("frame {} is interpolated: it has no mesh", name);
     if (!m) throw Error(Error::Kind::Data, fmt::format("frame {} has no mesh yet: run Surface first", name));
-    fs::create_directories(request_.out / "mesh");
-    writeMeshPly(request_.out / "mesh" / (name + ".ply"), transformed(*m, frame_from_world_));
+    fs::create_directories(request_.out / kMeshChannel);
+    writeMeshPly(request_.out / kMeshChannel / (name + ".ply"), transformed(*m, frame_from_world_));
   }
 
-  void picture(const ResidentScene& scene, const View& view, const std::string& name) {
-    const GBuffer g = renderer_.render(scene, view.camera);
-    const std::string &camera = view.name, png = name + ".png", exr = name + ".exr";
-    if (wants("rgb")) writePng(file("rgb", camera, png), bytesOf(g.radiance, false));
-    if (wants("base_color")) {
-      writeExr(file("base_color", camera, exr), planesOf(g.base_color, dmat3(1.0)), {"R", "G", "B"},
-               ExrPrecision::Half);
-    }
-    if (wants("ao"))
-      writeExr(file("ao", camera, exr), planesOf(g.ambient_occlusion), {"Y"}, ExrPrecision::Half);
-    if (wants("roughness"))
-      writeExr(file("roughness", camera, exr), planesOf(g.roughness), {"Y"}, ExrPrecision::Half);
-    if (wants("normal")) {
-      writeExr(file("normal", camera, exr), planesOf(g.normal_world, frame_from_world_.rotation),
-               {"R", "G", "B"}, ExrPrecision::Half);
-    }
-    if (wants("depth")) {
-      writeExr(file("depth", camera, exr), inUnit(planesOf(g.depth_m), frame_from_world_), {"Y"},
-               ExrPrecision::Float);
-    }
-    if (wants("alpha")) {
-      Image<std::uint8_t> alpha(g.alpha.width, g.alpha.height);
-      for (std::size_t i = 0; i < alpha.pixels.size(); ++i) alpha.pixels[i] = byteOf(g.alpha.pixels[i]);
-      writePng(file("alpha", camera, png), alpha);
-    }
+  // One of each channel; `folders` name them.
+  void draw(const RenderScene& scene, const View& view, const std::string& name,
+            std::span<const ChannelInfo> channels, const std::vector<std::string>& folders,
+            Progress& progress) {
+    renderer_.load(scene);
+    renderer_.draw(view.camera, channels, progress, [&](const RenderedPicture& picture) {
+      if (!picture.final) return;
+      for (std::size_t i = 0; i < channels.size(); ++i) {
+        progress.check();
+        writeChannel(file(folders[i], view.name, name, channels[i]), channels[i], *picture.channels[i].values,
+                     frame_from_world_);
+      }
+    });
+  }
+
+  void pictures(RenderScene scene, const View& view, const std::string& name, Progress& progress) {
+    std::vector<std::string> folders;
+    for (const ChannelInfo& c : drawn_) folders.push_back(c.id);
+    if (!drawn_.empty()) draw(scene, view, name, drawn_, folders, progress);
     for (const Light& light : lights_) {
-      writePng(file("relight_" + light.name, camera, png),
-               bytesOf(shade(g, view.camera, light.prepared, {}), true));
+      scene.environment = light.environment;
+      draw(scene, view, name, {relit_, 1}, {light.folder}, progress);
     }
   }
 
   struct Light {
-    std::string name;
-    PreparedLight prepared;
+    std::string folder;
+    std::shared_ptr<const Environment> environment;
   };
 
   const GaussianSequence& sequence_;
   const RenderRequest& request_;
-  ComputeDevice& device_;
-  GBufferRenderer renderer_;
+  SceneRenderer& renderer_;
   Similarity3 frame_from_world_;
+  bool mesh_ = false;
+  const ChannelInfo* relit_ = nullptr;  // asked for
+  std::vector<ChannelInfo> drawn_;      // what does not depend on the light
   std::vector<Light> lights_;
 };
 
-}  // namespace
-
-const std::vector<std::string>& renderChannelNames() {
-  static const std::vector<std::string> kNames = {"rgb",    "relight", "base_color", "ao",  "roughness",
-                                                  "normal", "depth",   "alpha",      "mesh"};
-  return kNames;
-}
-
-void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, ComputeDevice& device,
-                    Progress& progress) {
-  for (const std::string& c : request.channels) {
-    const auto& known = renderChannelNames();
-    if (std::find(known.begin(), known.end(), c) == known.end()) {
-      throw Error(Error::Kind::Usage,
-                  fmt::format("unknown channel \"{}\": expected some of {}", c, fmt::join(known, ", ")));
+void check(const RenderRequest& request, const RendererAbilities& abilities) {
+  for (const std::string& id : request.channels) {
+    const ChannelInfo& channel = channelOf(id);
+    if (id != kMeshChannel && !draws(abilities, channel)) {
+      throw Error(Error::Kind::Usage, fmt::format("the renderer {} does not draw {}: it draws {}",
+                                                  abilities.id, id, fmt::join(abilities.channels, ", ")));
     }
-    if (c == "relight" && request.environments.empty()) {
-      throw Error(Error::Kind::Usage, "the channel relight needs a panorama: give --environment FILE");
+    if (channel.needs == ChannelNeeds::MaterialsAndLight && request.environments.empty()) {
+      throw Error(Error::Kind::Usage,
+                  fmt::format("the channel {} needs a panorama: give --environment FILE", id));
     }
   }
+  if (abilities.needs_context)
+    throw Error(Error::Kind::Bug, "render channels: a renderer that draws textures");
+}
+
+}  // namespace
+
+void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, SceneRenderer& renderer,
+                    Progress& progress) {
+  check(request, renderer.abilities());
   progress.expect(static_cast<std::int64_t>(request.frames.size() * request.views.size()));
-  ChannelWriter writer(sequence, request, device);
+  ChannelWriter writer(sequence, request, renderer);
   for (const FrameIndex f : request.frames) writer.frame(f, progress);
 }
 

@@ -4,19 +4,18 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/render/device.h"
+#include "core/render/scene_renderer.h"
 #include "core/scene/capture.h"
 #include "core/scene/gaussian_sequence.h"
 
 namespace beam {
 
 struct RenderRequest {
-  std::vector<std::string> channels;  // of renderChannelNames(), "mesh"
+  std::vector<std::string> channels;  // ids of scene/channel.h
   std::vector<View> views;
   std::vector<FrameIndex> frames;
   std::vector<std::filesystem::path> environments;  // for "relight": a folder relight_<stem> each
@@ -24,12 +23,9 @@ struct RenderRequest {
   std::filesystem::path out;
 };
 
-// rgb relight base_color ao roughness normal depth alpha mesh
-const std::vector<std::string>& renderChannelNames();
-
-// Throws Error{Usage} for an unknown channel or relight without a panorama, Error{Data} when a frame is not
-// solved as far as a channel needs.
-void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, ComputeDevice& device,
+// Throws Error{Usage} for an unknown channel, one that the renderer does not draw, or relight without a
+// panorama; Error{Data} when a frame is not solved as far as a channel needs. The renderer draws no textures.
+void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, SceneRenderer& renderer,
                     Progress& progress);
 
 }  // namespace beam

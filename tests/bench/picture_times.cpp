@@ -9,9 +9,10 @@
 
 #include "core/base/rng.h"
 #include "core/optim/gaussian_model.h"
-#include "core/render/device.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/scene/environment.h"
 #include "tests/support/capsule_man.h"
+#include "tests/support/three_balls.h"
 #include "viewers/splat/splat_renderer.h"
 
 namespace {
@@ -52,11 +53,16 @@ std::shared_ptr<const Materials> someMaterials() {
 void pictures() {
   const auto cloud = std::make_shared<const GaussianCloud>(testing::capsuleCloud(kGaussians));
   const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
-  SplatRenderer renderer(device);
+  SplatRenderer renderer(newCpuSceneRenderer(device));
   SplatRequest request;
-  request.scene = {cloud, someMaterials()};
-  request.light =
-      std::make_shared<PreparedLight>(makeEnvironment(Image<vec3>(64, 32, vec3(1), Encoding::Linear)));
+  request.scene.instances = testing::sceneOf(cloud, someMaterials());
+  request.scene.environment =
+      std::make_shared<const Environment>(makeEnvironment(Image<vec3>(64, 32, vec3(1), Encoding::Linear)));
+  Progress progress;
+  SplatPicture shown;  // the view holds the last one
+  const auto draw = [&] {
+    renderer.render(request, progress, [&](SplatPicture p) { shown = std::move(p); });
+  };
   const auto raster =
       device->newRasterizer({.width = kWidth, .height = kHeight, .geometry = true, .extra_channels = 5});
   const GaussianBuffers buffers = toBuffers(*cloud, 5);
@@ -66,10 +72,10 @@ void pictures() {
     Camera camera = testing::capsuleCamera(kWidth, kHeight);
     camera.camera_from_world.translation_m.x += 1e-3 * i;
     request.camera = camera;
-    picture.add([&] { renderer.render(request); });
+    picture.add(draw);
     forward.add([&] { raster->forward(buffers, camera, 3, vec3(0), images); });
-    request.yaw_rad += 0.1f;
-    turned.add([&] { renderer.render(request); });
+    request.scene.lighting.environment.rotation_deg += 6;
+    turned.add(draw);
   }
   std::printf("forward %.1f ms; a picture from a new camera / forward %.3f; light turned / forward %.3f\n",
               forward.median(), picture.median() / forward.median(), turned.median() / forward.median());

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/services.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "tests/support/wait_for.h"
 #include "ui/main_window.h"
 #include "ui/theme.h"
@@ -58,7 +59,7 @@ int measure(const char* project) {
   const beam::Services services = beam::makeServices();
   beam::MainWindow window({.pipeline = services.pipeline,
                            .job_device = beam::makeDevice({}),
-                           .view_device = beam::makeDevice({}),
+                           .new_renderer = beam::cpuSceneRenderers(beam::makeDevice({}), 2),
                            .make_sample = {},
                            .version = "bench"},
                           beam::MainWindow::Layout::Fresh);

@@ -11,6 +11,7 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/pipeline/runner.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/scene/pose.h"
 #include "core/stages/result_files.h"
 #include "core/stages/step_ids.h"
@@ -209,7 +210,7 @@ StudioServices standInServices() {
   const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
   return {.pipeline = standInPipeline(),
           .job_device = device,
-          .view_device = device,
+          .new_renderer = cpuSceneRenderers(device),
           .make_sample = [](const fs::path& folder, Progress&) { fs::create_directories(folder); },
           .version = "test"};
 }

@@ -5,7 +5,10 @@
 #include <QImage>
 
 #include <memory>
+#include <utility>
+#include <vector>
 
+#include "core/scene/render_scene.h"
 #include "tests/support/splat_shapes.h"
 
 namespace beam::testing {
@@ -50,6 +53,17 @@ inline std::shared_ptr<const Materials> plainMaterials(std::size_t count) {
     materials->ambient_occlusion.of(i)[0] = 0.5f / kShC0;
   }
   return materials;
+}
+
+// One instance where it was captured; `materials` may be null.
+inline std::vector<RenderInstance> sceneOf(std::shared_ptr<const GaussianCloud> cloud,
+                                           std::shared_ptr<const Materials> materials = nullptr) {
+  static const auto none = std::make_shared<const std::vector<Attribute>>();
+  RenderInstance instance;
+  instance.cloud = std::move(cloud);
+  instance.materials = std::move(materials);
+  instance.attributes = none;
+  return {instance};
 }
 
 }  // namespace beam::testing

@@ -316,7 +316,7 @@ StudioServices services() {
   registerBuiltinStages(setup->stages);
   setup->presets = fs::path(BEAM_SOURCE_DIR) / "resources" / "recipes";
   setup->open_capture = sphereCapture;
-  return {.pipeline = setup, .job_device = {}, .view_device = {}, .make_sample = {}, .version = "test"};
+  return {.pipeline = setup, .job_device = {}, .new_renderer = {}, .make_sample = {}, .version = "test"};
 }
 
 class Settings : public ::testing::Test {

@@ -19,6 +19,7 @@
 #include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/pipeline/project.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "tests/support/sphere_capture.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/wait_for.h"
@@ -69,8 +70,11 @@ StudioServices patchyServices() {
   setup->presets = "";
   setup->open_capture = patchyCapture;
   const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
-  return {
-      .pipeline = setup, .job_device = device, .view_device = device, .make_sample = {}, .version = "test"};
+  return {.pipeline = setup,
+          .job_device = device,
+          .new_renderer = cpuSceneRenderers(device),
+          .make_sample = {},
+          .version = "test"};
 }
 
 class Page : public ::testing::Test {
@@ -127,11 +131,11 @@ TEST_F(Page, ComparesWithTheRenderWhereNothingWasChosen) {
     ASSERT_NE(button(text), nullptr);
     EXPECT_TRUE(button(text)->isEnabled());
     button(text)->click();
-    EXPECT_EQ(combo(2)->currentText(), "Rendered: Radiance") << text.toStdString();
+    EXPECT_EQ(combo(2)->currentText(), "Rendered: Colour") << text.toStdString();
     EXPECT_TRUE(button(text)->isChecked());
   }
   EXPECT_FALSE(button("Difference")->isChecked()) << "they take turns";
-  page.choosePictures("render.radiance", "");
+  page.choosePictures("render.rgb", "");
   QKeyEvent d(QEvent::KeyPress, Qt::Key_D, Qt::NoModifier);
   QApplication::sendEvent(&page.view(), &d);
   EXPECT_EQ(combo(2)->currentText(), "Photograph") << "a picture with itself tells nothing";
@@ -190,7 +194,7 @@ TEST_F(Page, ReadsAgainOnlyWhatChanged) {
 
 TEST_F(Page, SaysThatTheLightIsBeingRead) {
   page.setLight({nullptr, 0, true});
-  page.choosePictures("render.lit", "");
+  page.choosePictures("render.relight", "");
   ASSERT_TRUE(settle());
   EXPECT_TRUE(page.view().note(0).contains("not solved")) << page.view().note(0).toStdString();
 }
@@ -369,7 +373,7 @@ TEST(QuietControls, LeaveLettersAndDigitsToTheWindow) {
   KeyCounter window;
   auto* column = new QVBoxLayout(&window);
   auto* combo = new QuietCombo;
-  combo->addItems({"1   Lit", "2   Radiance", "Exposure"});
+  combo->addItems({"1   Relit", "2   Colour", "Exposure"});
   auto* slider = new QSlider(Qt::Horizontal);
   auto* check = new QCheckBox("Sky");
   for (QWidget* w : std::initializer_list<QWidget*>{combo, slider, check}) column->addWidget(w);

@@ -35,7 +35,7 @@ class Library : public ::testing::Test {
     return waitFor([this] { return lights.settled(); });
   }
   // The radiance of the light that is there; 0: none.
-  float shining() const { return lights.light() ? lights.light()->background(vec3(0, 0, 1), 0).x : 0; }
+  float shining() const { return lights.light() ? radianceFrom(*lights.light(), vec3(0, 0, 1)).x : 0; }
   QStringList names() const {
     QStringList out;
     for (const LightEntry& e : lights.entries()) out << e.name;

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 
+#include "core/render/cpu_scene_renderer.h"
 #include "core/render/device.h"
 #include "core/scene/transform.h"
 #include "tests/support/temp_dir.h"
@@ -68,8 +69,11 @@ class Panels : public ::testing::Test {
     auto setup = std::make_shared<PipelineSetup>();
     setup->open_capture = threeCameras;
     const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
-    return {
-        .pipeline = setup, .job_device = device, .view_device = device, .make_sample = {}, .version = "test"};
+    return {.pipeline = setup,
+            .job_device = device,
+            .new_renderer = cpuSceneRenderers(device),
+            .make_sample = {},
+            .version = "test"};
   }
   ~Panels() override { application().setStyleSheet({}); }
   static QApplication& application() { return *static_cast<QApplication*>(QCoreApplication::instance()); }

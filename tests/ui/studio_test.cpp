@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "core/io/file.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "tests/support/sphere_capture.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/wait_for.h"
@@ -106,8 +107,11 @@ class Studio : public ::testing::Test {
     setup->presets = "";
     setup->open_capture = sphereCapture;
     const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
-    return {
-        .pipeline = setup, .job_device = device, .view_device = device, .make_sample = {}, .version = "test"};
+    return {.pipeline = setup,
+            .job_device = device,
+            .new_renderer = cpuSceneRenderers(device),
+            .make_sample = {},
+            .version = "test"};
   }
   bool openCapture() {
     window.open(folder / "capture");

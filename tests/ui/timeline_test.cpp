@@ -16,6 +16,7 @@
 #include "core/io/file.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/scene/pose.h"
 #include "core/stages/carried_skin.h"
 #include "core/stages/result_files.h"
@@ -209,8 +210,11 @@ class Timeline : public ::testing::Test {
     });
     setup->open_capture = take;
     const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
-    return {
-        .pipeline = setup, .job_device = device, .view_device = device, .make_sample = {}, .version = "test"};
+    return {.pipeline = setup,
+            .job_device = device,
+            .new_renderer = cpuSceneRenderers(device),
+            .make_sample = {},
+            .version = "test"};
   }
   // A folder with the capture and its finished project, made once.
   static fs::path solvedTake() {

@@ -9,6 +9,7 @@
 
 #include <future>
 
+#include "core/render/cpu_scene_renderer.h"
 #include "tests/support/three_balls.h"
 #include "tests/support/wait_for.h"
 #include "viewers/splat/splat_view.h"
@@ -18,13 +19,14 @@ namespace {
 
 using testing::meanColor;
 using testing::plainMaterials;
+using testing::sceneOf;
 using testing::threeBalls;
 using testing::waitFor;
 
 constexpr QRectF kMiddle(0.47, 0.47, 0.06, 0.06), kTop(0.47, 0.22, 0.06, 0.06);
 
-std::shared_ptr<const PreparedLight> whiteSky() {
-  return std::make_shared<PreparedLight>(makeEnvironment(Image<vec3>(32, 16, vec3(1), Encoding::Linear)));
+std::shared_ptr<const Environment> whiteSky() {
+  return std::make_shared<const Environment>(makeEnvironment(Image<vec3>(32, 16, vec3(1), Encoding::Linear)));
 }
 
 class SplatHands : public ::testing::Test {
@@ -33,10 +35,10 @@ class SplatHands : public ::testing::Test {
     view.resize(400, 400);
     ViewState state;
     state.orbit = {.target_m = vec3(0), .elevation_rad = 0, .distance_m = 3.2f};
-    state.channel = Channel::Radiance;
+    state.channel = channelOf(kRgbChannel);
     view.setState(state);
     view.show();
-    view.setScene({cloud, nullptr}, "frame 0");
+    view.setScene(sceneOf(cloud), "frame 0");
   }
   bool settle() {
     return waitFor([this] { return view.settled() && view.isVisible(); });
@@ -68,7 +70,7 @@ class SplatHands : public ::testing::Test {
   }
 
   std::shared_ptr<const GaussianCloud> cloud = threeBalls();
-  SplatView view{makeCpuDevice()};
+  SplatView view{cpuSceneRenderers(makeCpuDevice())};
 };
 
 TEST_F(SplatHands, TheWheelZoomsToThePointer) {
@@ -99,7 +101,7 @@ TEST_F(SplatHands, FFramesTheSubjectFromWhereOneLooksAndHGoesHome) {
 TEST_F(SplatHands, TheNumberPadLooksAlongTheAxes) {
   ASSERT_TRUE(settle());
   EXPECT_TRUE(press(Qt::Key_3, Qt::KeypadModifier));
-  EXPECT_EQ(view.state().channel, Channel::Radiance) << "a digit of the pad is no channel";
+  EXPECT_EQ(view.state().channel, channelOf(kRgbChannel)) << "a digit of the pad is no channel";
   EXPECT_GT(centerOf(view.state().orbit.camera(10, 10)).x, 2);
   EXPECT_FALSE(press(Qt::Key_2, Qt::KeypadModifier));
   press(Qt::Key_7, Qt::KeypadModifier);
@@ -191,8 +193,8 @@ TEST_F(SplatHands, AnAnswerForAnEarlierFrameIsDropped) {
 }
 
 TEST_F(SplatHands, SaysThatTheLightIsBeingReadAndKeepsTheOneBefore) {
-  view.setScene({cloud, plainMaterials(cloud->size())}, "frame 0");
-  view.setChannel(Channel::Lit);
+  view.setScene(sceneOf(cloud, plainMaterials(cloud->size())), "frame 0");
+  view.setChannel(channelOf(kRelightChannel));
   view.setLight(nullptr, {}, false);
   const QImage without = picture();
   view.setLight(nullptr, "dome", true);
@@ -228,19 +230,20 @@ TEST_F(SplatHands, KeepsItsWordsInsideANarrowViewWithLargeTypeAndOffTheLegend) {
   large.setPointSizeF(1.5 * large.pointSizeF());
   view.setFont(large);
   view.resize(300, 440);
-  view.setScene({cloud, plainMaterials(cloud->size())},
+  view.setScene(sceneOf(cloud, plainMaterials(cloud->size())),
                 "frame 000004 is not solved: held from a_frame_with_a_name_that_is_very_long_indeed");
   view.setBadge("stale: made with other settings");
   view.setExposure(1.5f);
   const QRectF inside(0, 0, 300, 440);
-  for (const Channel channel : {Channel::Depth, Channel::Roughness, Channel::Lit}) {
+  for (const ChannelInfo& channel :
+       {channelOf(kDepthChannel), channelOf(kRoughnessChannel), channelOf(kRelightChannel)}) {
     view.setChannel(channel);
     picture();
     const WordBoxes& words = view.words();
     EXPECT_TRUE(inside.contains(words.title));
     EXPECT_TRUE(inside.contains(words.badge));
     EXPECT_FALSE(words.title.intersects(words.badge));
-    if (channel == Channel::Lit) {
+    if (channel == channelOf(kRelightChannel)) {
       EXPECT_TRUE(inside.contains(words.foot)) << "no light is chosen";
       continue;
     }
@@ -252,7 +255,7 @@ TEST_F(SplatHands, KeepsItsWordsInsideANarrowViewWithLargeTypeAndOffTheLegend) {
 }
 
 TEST_F(SplatHands, HoldsTheLimitsOfDepthWhileTheCameraMoves) {
-  view.setChannel(Channel::Depth);
+  view.setChannel(channelOf(kDepthChannel));
   const vec3 near = meanColor(picture(), kTop);
   view.lockDepth(true);
   ASSERT_TRUE(view.state().depth_limits);
@@ -266,7 +269,7 @@ TEST_F(SplatHands, HoldsTheLimitsOfDepthWhileTheCameraMoves) {
   view.lockDepth(false);
   const vec3 automatic = meanColor(picture(), kTop);
   EXPECT_GT(glm::distance(locked, automatic), 20) << "farther away is another colour between the same limits";
-  view.setChannel(Channel::Normal);
+  view.setChannel(channelOf(kNormalChannel));
   picture();
   view.lockDepth(true);
   EXPECT_FALSE(view.state().depth_limits) << "there are none to hold";
@@ -280,13 +283,13 @@ TEST_F(SplatHands, ForgetsWhatBelongedToTheProjectBefore) {
   view.setExposure(2);
   view.setYaw(1);
   view.setSky(true);
-  view.setChannel(Channel::Depth);
+  view.setChannel(channelOf(kDepthChannel));
   view.setLight(whiteSky(), "dome");
   view.setBadge("preview of a cancelled run");
   view.resetState();
   const ViewState& state = view.state();
   EXPECT_FALSE(state.look_through);
-  EXPECT_EQ(state.channel, Channel::Lit);
+  EXPECT_EQ(state.channel, channelOf(kRelightChannel));
   EXPECT_EQ(state.exposure_stops, 0);
   EXPECT_EQ(state.yaw_rad, 0);
   EXPECT_FALSE(state.sky);

@@ -222,49 +222,44 @@ TEST(LatestWorker, StopsWithAJobStillWaiting) {
   EXPECT_FALSE(second);
 }
 
-TEST(Channels, AreFoundByTheNamesOfTheCommandLine) {
-  for (int i = 0; i < kChannelCount; ++i) {
-    const auto channel = static_cast<Channel>(i);
-    EXPECT_EQ(channelNamed(infoOf(channel).name), channel);
-  }
-  EXPECT_FALSE(channelNamed("colour"));
+Planes plane(float value) { return Planes(1, 1, 1, value); }
+
+Planes triple(vec3 value) {
+  Planes p(1, 1, 3);
+  for (int c = 0; c < 3; ++c) p.values[c] = value[c];
+  return p;
 }
 
-GBuffer onePixel(float alpha) {
-  GBuffer g;
-  g.alpha = Image<float>(1, 1, alpha);
-  g.depth_m = Image<float>(1, 1, 2.5f);
-  g.normal_world = Image<vec3>(1, 1, vec3(0, 1, 0));
-  g.radiance = Image<vec3>(1, 1, alpha * vec3(0.8f, 0.4f, 0.2f));
-  return g;
-}
+const ChannelInfo& rgb() { return channelOf(kRgbChannel); }
 
-TEST(ChannelPicture, ShowsRadianceAsPhotographed) {
-  const Image<u8vec4> picture = channelPicture(onePixel(1), {}, {}, {.channel = Channel::Radiance});
+TEST(ChannelPicture, ShowsColourAsPhotographed) {
+  const Image<u8vec4> picture = channelPicture(rgb(), triple({0.8f, 0.4f, 0.2f}), plane(1), {}, {});
   EXPECT_NEAR(picture.pixels[0].x, 204, 1);
   EXPECT_NEAR(picture.pixels[0].y, 102, 1);
   EXPECT_NEAR(picture.pixels[0].z, 51, 1);
 }
 
 TEST(ChannelPicture, ShowsNormalsAsColoursAndNothingWhereAChannelIsMissing) {
-  const Image<u8vec4> normal = channelPicture(onePixel(1), {}, {}, {.channel = Channel::Normal});
+  const Image<u8vec4> normal = channelPicture(channelOf(kNormalChannel), triple({0, 1, 0}), plane(1), {}, {});
   EXPECT_EQ(normal.pixels[0], u8vec4(128, 255, 128, 255));
-  const Image<u8vec4> missing = channelPicture(onePixel(1), {}, {}, {.channel = Channel::BaseColor});
-  const Image<u8vec4> empty = channelPicture(onePixel(0), {}, {}, {.channel = Channel::Radiance});
+  const Image<u8vec4> missing = channelPicture(channelOf(kBaseColorChannel), {}, plane(1), {}, {});
+  const Image<u8vec4> empty = channelPicture(rgb(), triple(vec3(0)), plane(0), {}, {});
   EXPECT_EQ(missing.pixels[0], empty.pixels[0]);
 }
 
 TEST(ChannelPicture, PutsTheSkyBehindWhatIsHalfThere) {
-  const Image<vec3> lit(1, 1, vec3(0.25f)), sky(1, 1, vec3(0.5f));
-  const Image<u8vec4> picture = channelPicture(onePixel(0.5f), lit, sky, {.channel = Channel::Lit});
+  const Image<vec3> sky(1, 1, vec3(0.5f));
+  const Image<u8vec4> picture =
+      channelPicture(channelOf(kRelightChannel), triple(vec3(0.25f)), plane(0.5f), sky, {});
   EXPECT_NEAR(picture.pixels[0].x, 255 * srgbFromLinear(0.5f), 1);
 }
 
 TEST(ChannelPicture, ReadsTheValueOfTheSurfaceNotOfTheBlend) {
-  EXPECT_EQ(describePixel(onePixel(0.5f), {}, Channel::Radiance, 0, 0),
-            "Radiance sRGB 0.800 0.400 0.200 · alpha 0.50");
-  EXPECT_EQ(describePixel(onePixel(1), {}, Channel::Depth, 0, 0), "Depth 2.5000 m · alpha 1.00");
-  EXPECT_EQ(describePixel(onePixel(0), {}, Channel::Depth, 0, 0), "nothing here");
+  EXPECT_EQ(describePixel(rgb(), triple({0.4f, 0.2f, 0.1f}), plane(0.5f), 0, 0),
+            "Colour sRGB 0.800 0.400 0.200 · alpha 0.50");
+  const ChannelInfo& depth = channelOf(kDepthChannel);
+  EXPECT_EQ(describePixel(depth, plane(2.5f), plane(1), 0, 0), "Depth 2.5000 m · alpha 1.00");
+  EXPECT_EQ(describePixel(depth, plane(0), plane(0), 0, 0), "nothing here");
 }
 
 TEST(Picture, KeepsPhotographsAsTheyAreAndReadsThemLinearToo) {

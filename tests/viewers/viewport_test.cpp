@@ -7,6 +7,7 @@
 #include <QMouseEvent>
 #include <QOpenGLWidget>
 
+#include "core/render/cpu_scene_renderer.h"
 #include "tests/support/three_balls.h"
 #include "tests/support/wait_for.h"
 #include "viewers/image/image_view.h"
@@ -18,6 +19,7 @@ namespace {
 
 using testing::meanColor;
 using testing::plainMaterials;
+using testing::sceneOf;
 using testing::threeBalls;
 using testing::waitFor;
 
@@ -27,10 +29,10 @@ class SplatViewport : public ::testing::Test {
     view.resize(400, 400);
     ViewState state;
     state.orbit = {.target_m = vec3(0), .elevation_rad = 0, .distance_m = 3.2f};
-    state.channel = Channel::Radiance;
+    state.channel = channelOf(kRgbChannel);
     view.setState(state);
     view.show();
-    view.setScene({cloud, nullptr}, "frame 0");
+    view.setScene(sceneOf(cloud), "frame 0");
   }
   QImage picture() {
     EXPECT_TRUE(waitFor([&] { return view.settled() && view.isVisible(); }));
@@ -42,7 +44,7 @@ class SplatViewport : public ::testing::Test {
   }
 
   std::shared_ptr<const GaussianCloud> cloud = threeBalls();
-  SplatView view{makeCpuDevice()};
+  SplatView view{cpuSceneRenderers(makeCpuDevice())};
 };
 
 constexpr QRectF kTop(0.47, 0.22, 0.06, 0.06), kBottom(0.47, 0.72, 0.06, 0.06),
@@ -64,7 +66,7 @@ TEST_F(SplatViewport, NamesWhatItShowsInTheCorner) {
   picture();
   const QImage image = view.grab().toImage();  // as a screenshot of the window takes it
   int bright = 0;
-  for (int y = 10; y < 36; ++y) {
+  for (int y = 10; y < 60; ++y) {
     for (int x = 10; x < 200; ++x) bright += image.pixelColor(x, y).lightness() > 150;
   }
   EXPECT_GT(bright, 100) << "the label's words are not there";
@@ -83,12 +85,12 @@ TEST_F(SplatViewport, ChangesTheChannelWithAKey) {
   EXPECT_GT(meanColor(picture(), kTop).x, 180);
 }
 
-TEST_F(SplatViewport, ShowsRadianceWhereMaterialsAreMissingAndLightWhereTheyAreNot) {
+TEST_F(SplatViewport, ShowsColourWhereMaterialsAreMissingAndLightWhereTheyAreNot) {
   press(Qt::Key_1);
   EXPECT_GT(meanColor(picture(), kTop).x, 180);
-  view.setScene({cloud, plainMaterials(cloud->size())}, "frame 0");
+  view.setScene(sceneOf(cloud, plainMaterials(cloud->size())), "frame 0");
   Image<vec3> sky(32, 16, vec3(1), Encoding::Linear);
-  view.setLight(std::make_shared<PreparedLight>(makeEnvironment(std::move(sky))), "white sky");
+  view.setLight(std::make_shared<const Environment>(makeEnvironment(std::move(sky))), "white sky");
   const vec3 lit = meanColor(picture(), kTop), lit_bottom = meanColor(picture(), kBottom);
   EXPECT_NEAR(lit.x, lit_bottom.x, 12) << "the same material under a white sky everywhere";
   EXPECT_GT(lit.x, 1.3f * lit.z);
@@ -97,12 +99,12 @@ TEST_F(SplatViewport, ShowsRadianceWhereMaterialsAreMissingAndLightWhereTheyAreN
 }
 
 TEST_F(SplatViewport, TurnsTheLightWithShiftAndTheRightButton) {
-  view.setScene({cloud, plainMaterials(cloud->size())}, "frame 0");
+  view.setScene(sceneOf(cloud, plainMaterials(cloud->size())), "frame 0");
   Image<vec3> sky(64, 32, vec3(0.02f), Encoding::Linear);
   for (int y = 8; y < 20; ++y) {
     for (int x = 28; x < 36; ++x) sky(x, y) = vec3(30);  // from +Z, behind the eye
   }
-  view.setLight(std::make_shared<PreparedLight>(makeEnvironment(std::move(sky))), "lamp");
+  view.setLight(std::make_shared<const Environment>(makeEnvironment(std::move(sky))), "lamp");
   press(Qt::Key_1);
   const vec3 front = meanColor(picture(), kTop);
   const auto mouse = [&](QEvent::Type type, QPointF at) {

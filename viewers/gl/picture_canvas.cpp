@@ -42,6 +42,8 @@ void PictureCanvas::initializeGL() {
   stale_.fill(true);
 }
 
+bool PictureCanvas::paintUnder(const QRectF&, const QSizeF&) { return false; }
+
 void PictureCanvas::paintGL() {
   auto& gl = currentGl();
   gl.glClearColor(kBackdrop[0], kBackdrop[1], kBackdrop[2], 1);
@@ -57,7 +59,8 @@ void PictureCanvas::paintGL() {
   const auto scaled = [&](const QRectF& r) { return QRectF(r.topLeft() * ratio, r.size() * ratio); };
   QuadStyle style{.opacity = 1, .crisp = layout.crisp};
   if (layout.wipe_x) style.end_column = static_cast<float>(*layout.wipe_x * ratio);
-  if (pictures_[0]) quads_->draw(textures_[0], scaled(layout.target[0]), framebuffer, style);
+  if (!paintUnder(scaled(layout.target[0]), framebuffer) && pictures_[0])
+    quads_->draw(textures_[0], scaled(layout.target[0]), framebuffer, style);
   style = {.opacity = layout.wipe_x ? 1 : layout.over_opacity, .crisp = layout.crisp};
   if (layout.wipe_x) style.first_column = static_cast<float>(*layout.wipe_x * ratio);
   if (pictures_[1] && style.opacity > 0)

@@ -51,6 +51,9 @@ class PictureCanvas : public QOpenGLWidget {
   void setPicture(int layer, SharedPicture picture);
   bool hasPicture(int layer) const { return pictures_[layer] != nullptr; }
   virtual PictureLayout pictureLayout() const = 0;
+  // Draws what is not a picture of the host in place of the first layer; false: there is nothing of the kind.
+  // In pixels of the framebuffer, which is bound.
+  virtual bool paintUnder(const QRectF& target_px, const QSizeF& framebuffer);
   virtual void paintOver(QPainter& painter) = 0;
   // Words at the left edge are no wider: what is looked at stands in the middle.
   double columnWidth() const;

@@ -5,6 +5,7 @@
 #include <QOpenGLShaderProgram>
 #include <QOpenGLVertexArrayObject>
 #include <QRectF>
+#include <QVector4D>
 
 #include <limits>
 
@@ -19,6 +20,13 @@ struct QuadStyle {
       -std::numeric_limits<float>::max();  // framebuffer pixels that may be painted, half-open
   float end_column = std::numeric_limits<float>::max();
 };
+
+// The shaders of the viewers are found from then on: resources of a static library are linked only when
+// named.
+void nameShaders();
+
+// Left, top, right, bottom in normalised device coordinates; both in pixels, y down.
+QVector4D clipRectangle(const QRectF& target, const QSizeF& framebuffer);
 
 class QuadPainter {
  public:

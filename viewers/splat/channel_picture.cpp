@@ -14,7 +14,6 @@ namespace beam {
 namespace {
 
 constexpr float kVisible = 1 / 255.0f;
-constexpr vec3 kBackdrop(0.0110f, 0.0116f, 0.0130f);  // linear; sRGB 27 28 30
 
 // Data shown as it is (0 black, 1 white), over the encoded backdrop.
 u8vec4 overBackdrop(vec3 shown, float alpha) {
@@ -22,112 +21,80 @@ u8vec4 overBackdrop(vec3 shown, float alpha) {
   return u8vec4(u8vec3(glm::clamp(glm::mix(backdrop, shown, alpha), vec3(0), vec3(1)) * 255.0f + 0.5f), 255);
 }
 
-u8vec4 dataPixel(const GBuffer& g, const ChannelOptions& o, std::size_t i) {
-  const float alpha = g.alpha.pixels[i];
-  if (alpha < kVisible) return overBackdrop(vec3(0), 0);
-  switch (o.channel) {
-    case Channel::AmbientOcclusion:
-      return overBackdrop(vec3(g.ambient_occlusion.pixels[i] / alpha), alpha);
-    case Channel::Roughness:
-      return overBackdrop(vec3(falseColor(g.roughness.pixels[i] / alpha, o.limits)) / 255.0f, alpha);
-    case Channel::Normal:
-      return overBackdrop(0.5f + 0.5f * g.normal_world.pixels[i], alpha);
-    case Channel::Depth: {
-      const float depth = g.depth_m.pixels[i];
-      return depth > 0 ? overBackdrop(vec3(falseColor(depth, o.limits)) / 255.0f, 1)
-                       : overBackdrop(vec3(0), 0);
-    }
-    default:
-      return overBackdrop(vec3(0), 0);
-  }
+vec3 triple(const Planes& p, std::size_t i) { return {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]}; }
+
+// Of the surface, where alpha is at least kVisible.
+float surfaceValue(const ChannelInfo& channel, float value, float alpha) {
+  return channel.times_alpha ? value / alpha : value;
 }
 
-bool isLight(Channel c) { return c == Channel::Lit || c == Channel::Radiance || c == Channel::BaseColor; }
+u8vec4 dataPixel(const ChannelInfo& channel, const Planes& values, const Limits& limits, float alpha,
+                 std::size_t i) {
+  if (alpha < std::max(kVisible, channel.least_alpha)) return overBackdrop(vec3(0), 0);
+  if (channel.quantity == Quantity::Direction) return overBackdrop(0.5f + 0.5f * triple(values, i), alpha);
+  const float value = surfaceValue(channel, values.values[i], alpha);
+  const vec3 shown = channel.false_color ? vec3(falseColor(value, limits)) / 255.0f : vec3(value);
+  return overBackdrop(shown, channel.least_alpha > kVisible ? 1 : alpha);
+}
 
-std::string triple(const char* what, vec3 v) {
+std::string inWords(const char* what, vec3 v) {
   return fmt::format("{} {:.3f} {:.3f} {:.3f}", what, v.x, v.y, v.z);
+}
+
+std::string inWords(const ChannelInfo& channel, const Planes& values, float alpha, std::size_t i) {
+  switch (channel.quantity) {
+    case Quantity::Color: {
+      const vec3 v = triple(values, i);
+      return inWords(channel.encoding == Encoding::Srgb ? "sRGB" : "linear",
+                     channel.times_alpha ? v / alpha : v);
+    }
+    case Quantity::Direction:
+      return inWords("x y z", triple(values, i));
+    case Quantity::Length:
+      return fmt::format("{:.4f} {}", surfaceValue(channel, values.values[i], alpha), channel.unit);
+    case Quantity::Scalar: {
+      const float v = surfaceValue(channel, values.values[i], alpha);
+      return channel.unit.empty() ? fmt::format("{:.3f}", v) : fmt::format("{:.3f} {}", v, channel.unit);
+    }
+  }
+  return {};
 }
 
 }  // namespace
 
-bool holds(const GBuffer& g, const Image<vec3>& lit, Channel channel) {
-  switch (channel) {
-    case Channel::Lit:
-      return !lit.empty();
-    case Channel::Radiance:
-      return !g.radiance.empty();
-    case Channel::BaseColor:
-      return !g.base_color.empty();
-    case Channel::AmbientOcclusion:
-      return !g.ambient_occlusion.empty();
-    case Channel::Roughness:
-      return !g.roughness.empty();
-    case Channel::Normal:
-      return !g.normal_world.empty();
-    case Channel::Depth:
-      return !g.depth_m.empty();
-  }
-  return false;
-}
-
-Image<u8vec4> channelPicture(const GBuffer& g, const Image<vec3>& lit, const Image<vec3>& sky,
-                             const ChannelOptions& o) {
-  const int w = g.alpha.width, h = g.alpha.height;
+Image<u8vec4> channelPicture(const ChannelInfo& channel, const Planes& values, const Planes& alpha,
+                             const Image<vec3>& sky, const ChannelOptions& o) {
+  const int w = alpha.width, h = alpha.height;
+  const bool held = !values.empty();
   Image<u8vec4> picture(w, h, overBackdrop(vec3(0), 0), Encoding::Srgb);
-  const bool held = holds(g, lit, o.channel);
   if (!held && sky.empty()) return picture;
   const float gain = std::exp2(o.exposure_stops);
   const SrgbEncoder& encode = SrgbEncoder::instance();
+  const bool color = channel.quantity == Quantity::Color;
   parallelFor(h, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * w; i < end * w; ++i) {
-      if (!isLight(o.channel)) {
-        picture.pixels[i] = dataPixel(g, o, i);
+      if (!color) {
+        if (held) picture.pixels[i] = dataPixel(channel, values, o.limits, alpha.values[i], i);
         continue;
       }
-      const float alpha = held ? g.alpha.pixels[i] : 0;
-      vec3 light(0);
-      if (held && o.channel == Channel::Lit) light = gain * lit.pixels[i];
-      if (held && o.channel == Channel::BaseColor) light = gain * g.base_color.pixels[i];
-      if (held && o.channel == Channel::Radiance && alpha > 0) {
-        light = gain * linearFromSrgb(glm::max(g.radiance.pixels[i], vec3(0)));
-      }
+      const float cover = held ? alpha.values[i] : 0;
+      if (cover == 0 && sky.empty()) continue;
+      vec3 light = held ? triple(values, i) : vec3(0);
+      if (channel.encoding == Encoding::Srgb) light = linearFromSrgb(glm::max(light, vec3(0)));
       const vec3 behind = sky.empty() ? kBackdrop : gain * sky.pixels[i];
-      picture.pixels[i] = u8vec4(encode(light + (1 - alpha) * behind), 255);
+      picture.pixels[i] = u8vec4(encode(gain * light + (1 - cover) * behind), 255);
     }
   });
   return picture;
 }
 
-std::string describePixel(const GBuffer& g, const Image<vec3>& lit, Channel channel, int x, int y) {
-  const std::size_t i = g.alpha.index(x, y);
-  const float alpha = g.alpha.pixels[i];
-  if (alpha < kVisible) return "nothing here";
-  if (!holds(g, lit, channel)) return fmt::format("alpha {:.2f}", alpha);
-  std::string value;
-  switch (channel) {
-    case Channel::Lit:
-      value = triple("linear", lit.pixels[i] / alpha);
-      break;
-    case Channel::Radiance:
-      value = triple("sRGB", g.radiance.pixels[i] / alpha);
-      break;
-    case Channel::BaseColor:
-      value = triple("linear", g.base_color.pixels[i] / alpha);
-      break;
-    case Channel::AmbientOcclusion:
-      value = fmt::format("{:.3f}", g.ambient_occlusion.pixels[i] / alpha);
-      break;
-    case Channel::Roughness:
-      value = fmt::format("{:.3f}", g.roughness.pixels[i] / alpha);
-      break;
-    case Channel::Normal:
-      value = triple("x y z", g.normal_world.pixels[i]);
-      break;
-    case Channel::Depth:
-      value = fmt::format("{:.4f} m", g.depth_m.pixels[i]);
-      break;
-  }
-  return fmt::format("{} {} · alpha {:.2f}", infoOf(channel).title, value, alpha);
+std::string describePixel(const ChannelInfo& channel, const Planes& values, const Planes& alpha, int x,
+                          int y) {
+  const std::size_t i = static_cast<std::size_t>(y) * alpha.width + x;
+  const float cover = alpha.values[i];
+  if (cover < kVisible) return "nothing here";
+  if (values.empty()) return fmt::format("alpha {:.2f}", cover);
+  return fmt::format("{} {} · alpha {:.2f}", channel.title, inWords(channel, values, cover, i), cover);
 }
 
 }  // namespace beam

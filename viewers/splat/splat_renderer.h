@@ -1,69 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests for a picture of Gaussians, answered on a background thread's own time: the G-buffer is made anew
-// only when Gaussians or camera change, shading only when light changes, the channel's picture always.
+// Requests of a view for a picture of a scene, answered through a scene renderer: what cannot be shown is
+// replaced and named, values of the host become pixels of the screen. On a background thread, or, where the
+// renderer needs one, with the view's context current.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "core/render/deferred.h"
+#include "core/render/scene_renderer.h"
 #include "viewers/false_color.h"
 #include "viewers/view_state.h"
 
 namespace beam {
 
-struct SplatScene {
-  std::shared_ptr<const GaussianCloud> cloud;
-  std::shared_ptr<const Materials> materials;  // null: not there yet
-};
-
 struct SplatRequest {
-  SplatScene scene;
+  RenderScene scene;
   Camera camera;
-  Channel channel = Channel::Lit;
-  std::shared_ptr<const PreparedLight> light;  // null: none chosen
-  float yaw_rad = 0;
+  ChannelInfo channel = channelOf(kRelightChannel);
   float exposure_stops = 0;
   bool sky = false;
   std::optional<Limits> depth_limits;  // nothing: of the picture itself
 };
 
-// What a channel that was asked for cannot be shown without.
-enum class Lack { None, Light, Materials };
-
 struct SplatPicture {
-  Image<u8vec4> pixels;  // sRGB
-  std::shared_ptr<const GBuffer> gbuffer;
-  std::shared_ptr<const Image<vec3>> lit;  // linear x alpha; empty image: not lit
-  Camera camera;
-  Channel channel = Channel::Lit;  // what is shown: Radiance where Lit could not be
+  Image<u8vec4> pixels;      // sRGB; empty: the channel is a texture, or there is none
+  RenderedPicture rendered;  // what is shown, where the scene has it, with alpha and depth
+  Image<vec3> sky;           // linear, of a texture's picture; empty: the backdrop
+  ChannelInfo channel = channelOf(kRgbChannel);  // what is shown: colour where relit could not be
   Limits limits;
-  Channel wanted = Channel::Lit;
-  Lack lack = Lack::None;
-  std::string error;  // why there is no picture; empty: there is one
-  double milliseconds = 0;
+  ChannelInfo wanted = channelOf(kRelightChannel);
+  float exposure_stops = 0;
+  Lack lack = Lack::None;             // of what was wanted
+  std::vector<std::string> left_out;  // of the scene, a sentence each
+  std::string error;                  // why there is no picture; empty: there is one
+  double milliseconds = 0;            // to the first picture of the request
 };
+
+// The values of a channel that is on the host; empty where it is not.
+const Planes& valuesIn(const SplatPicture& picture, std::string_view channel);
 
 class SplatRenderer {
  public:
-  explicit SplatRenderer(std::shared_ptr<ComputeDevice> device);
-  // Not thread-safe: one thread at a time.
-  SplatPicture render(const SplatRequest& request);
+  explicit SplatRenderer(std::unique_ptr<SceneRenderer> renderer);
+  const RendererAbilities& abilities() const { return renderer_->abilities(); }
+
+  using OnPicture = std::function<void(SplatPicture)>;
+  // Not thread-safe: one thread at a time. Throws what SceneRenderer does.
+  void render(const SplatRequest& request, Progress& progress, const OnPicture& on_picture);
 
  private:
-  const GBuffer& gbufferFor(const SplatRequest& request);
-  const Image<vec3>& litFor(const SplatRequest& request);
-
-  std::shared_ptr<ComputeDevice> device_;
-  GBufferRenderer renderer_;
-  std::unique_ptr<ResidentScene> resident_;
-  SplatScene scene_;  // of gbuffer_
-  Camera camera_;
-  std::shared_ptr<const GBuffer> gbuffer_;
-  std::shared_ptr<const PreparedLight> lit_by_;
-  float lit_yaw_rad_ = 0;
-  std::shared_ptr<const Image<vec3>> lit_;
+  std::unique_ptr<SceneRenderer> renderer_;
+  RenderScene scene_;
+  std::vector<std::string> left_out_;
+  bool loaded_ = false;
 };
+
+// The panorama as the camera sees it, the lighting's turn and gain applied: linear radiance.
+Image<vec3> skyOf(const Camera& camera, const RenderScene& scene);
 
 }  // namespace beam

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "viewers/encode.h"
-#include "viewers/splat/channel_picture.h"
+#include "viewers/splat/channel_painter.h"
 
 namespace beam {
 namespace {
@@ -15,7 +15,6 @@ namespace {
 constexpr int kRest_ms = 160;            // without movement before the full picture
 constexpr double kMovingBudget_ms = 45;  // a coarse picture should take no longer
 constexpr int kCoarsest = 4;
-constexpr double kNewest = 0.3;  // weight of the newest time in their mean
 
 SharedPicture pictureOf(const Image<u8vec3>& photo) {
   auto picture = std::make_shared<Image<u8vec4>>(photo.width, photo.height);
@@ -45,21 +44,29 @@ Bounds boundsOf(const std::vector<vec3>& positions_m) {
   return bounds;
 }
 
-SplatView::SplatView(std::shared_ptr<ComputeDevice> device, QWidget* parent)
-    : PictureCanvas(parent), renderer_(std::make_shared<SplatRenderer>(std::move(device))) {
+SplatView::SplatView(SceneRendererFactory new_renderer, QWidget* parent)
+    : PictureCanvas(parent),
+      new_renderer_(std::move(new_renderer)),
+      renderer_(std::make_shared<SplatRenderer>(new_renderer_())) {
   rest_timer_.setSingleShot(true);
   rest_timer_.setInterval(kRest_ms);
   connect(&rest_timer_, &QTimer::timeout, this, [this] { request(1); });
 }
 
-SplatView::~SplatView() = default;
+SplatView::~SplatView() { leaveContext(); }
 
-void SplatView::setScene(const SplatScene& scene, const QString& caption) {
-  scene_ = scene;
+void SplatView::initializeGL() {
+  PictureCanvas::initializeGL();
+  newContext();
+}
+
+void SplatView::setScene(std::vector<RenderInstance> instances, const QString& caption) {
+  std::erase_if(instances, [](const RenderInstance& i) { return !i.cloud || i.cloud->size() == 0; });
+  scene_.instances = std::move(instances);
   caption_ = caption;
-  if (!scene_.cloud || scene_.cloud->size() == 0) {
-    scene_ = {};
+  if (!hasScene()) {
     shown_ = {};
+    read_back_.clear();
     shown_ticket_ = ++newest_ticket_;
     setPicture(0, nullptr);
     return;
@@ -89,12 +96,12 @@ void SplatView::setCapture(std::shared_ptr<const CaptureSet> capture, FrameIndex
   lookThrough(std::nullopt);
 }
 
-void SplatView::setLight(std::shared_ptr<const PreparedLight> light, const QString& name, bool reading) {
+void SplatView::setLight(std::shared_ptr<const Environment> light, const QString& name, bool reading) {
   light_being_read_ = reading && !light ? name : QString();
   update();
-  if (!light_being_read_.isEmpty() && light_) return;
-  const bool same = light == light_;
-  light_ = std::move(light);
+  if (!light_being_read_.isEmpty() && scene_.environment) return;
+  const bool same = light == scene_.environment;
+  scene_.environment = std::move(light);
   light_name_ = name;
   if (!same) changed(Pace::Resting);
 }
@@ -102,8 +109,8 @@ void SplatView::setLight(std::shared_ptr<const PreparedLight> light, const QStri
 void SplatView::resetState() {
   state_ = {};
   keep_photo_opacity_ = false;
-  framed_ = scene_.cloud != nullptr;
-  light_ = nullptr;
+  framed_ = hasScene();
+  scene_.environment = nullptr;
   light_name_.clear();
   light_being_read_.clear();
   dropPhoto();
@@ -120,7 +127,7 @@ void SplatView::setState(const ViewState& state) {
   changed(Pace::Resting);
 }
 
-void SplatView::setChannel(Channel channel) {
+void SplatView::setChannel(const ChannelInfo& channel) {
   state_.channel = channel;
   changed(Pace::Resting);
 }
@@ -148,7 +155,7 @@ void SplatView::setPhotoOpacity(float opacity) {
 }
 
 void SplatView::lockDepth(bool on) {
-  if (on && shown_.channel == Channel::Depth && hasPicture(0)) state_.depth_limits = shown_.limits;
+  if (on && shown_.channel.id == kDepthChannel && hasShown()) state_.depth_limits = shown_.limits;
   if (!on) state_.depth_limits.reset();
   changed(Pace::Resting);
 }
@@ -171,7 +178,12 @@ void SplatView::leaveCamera() {
 }
 
 Bounds SplatView::sceneBounds() const {
-  if (scene_.cloud) return boundsOf(scene_.cloud->position_m);
+  std::vector<vec3> positions;
+  for (const RenderInstance& instance : scene_.instances) {
+    for (const vec3& p : instance.cloud->position_m)
+      positions.emplace_back(instance.world_from_cloud * dvec3(p));
+  }
+  if (!positions.empty()) return boundsOf(positions);
   return capture_ ? boundsOf(capture_->seed_points.position_m) : Bounds{};
 }
 
@@ -220,51 +232,6 @@ Camera SplatView::cameraFor(int width_px, int height_px) const {
     return fittedTo(capture_->views[state_.look_through->value].camera, width_px, height_px);
   }
   return state_.orbit.camera(width_px, height_px);
-}
-
-void SplatView::request(int divisor) {
-  if (!scene_.cloud || width() < 8 || height() < 8) return;
-  if (divisor == 1) rest_timer_.stop();
-  const double ratio = devicePixelRatioF();
-  const int w = std::max(8, static_cast<int>(width() * ratio) / divisor);
-  const int h = std::max(8, static_cast<int>(height() * ratio) / divisor);
-  const SplatRequest wish{.scene = scene_,
-                          .camera = cameraFor(w, h),
-                          .channel = state_.channel,
-                          .light = light_,
-                          .yaw_rad = state_.yaw_rad,
-                          .exposure_stops = state_.exposure_stops,
-                          .sky = state_.sky,
-                          .depth_limits = state_.depth_limits};
-  const std::uint64_t ticket = ++newest_ticket_;
-  worker_.submit([this, wish, divisor, ticket, renderer = renderer_] {
-    SplatPicture picture;
-    try {
-      picture = renderer->render(wish);
-    } catch (const std::exception& e) {  // the border of this thread: the view says it instead of a picture
-      picture.error = e.what();
-    }
-    auto held = std::make_shared<SplatPicture>(std::move(picture));
-    QMetaObject::invokeMethod(
-        this, [this, held, divisor, ticket] { take(std::move(*held), divisor, ticket); },
-        Qt::QueuedConnection);
-  });
-}
-
-void SplatView::take(SplatPicture picture, int divisor, std::uint64_t ticket) {
-  if (!scene_.cloud) return;
-  shown_ = std::move(picture);
-  shown_ticket_ = ticket;
-  shown_divisor_ = divisor;
-  if (divisor == 2 && passing_ == 2 && shown_.milliseconds > 0)
-    half_milliseconds_ = std::lerp(halfPictureMilliseconds(), shown_.milliseconds, kNewest);
-  if (divisor == 1 && shown_.milliseconds > 0) full_milliseconds_ = shown_.milliseconds;
-  setPicture(0, shown_.pixels.empty() ? nullptr : std::make_shared<Image<u8vec4>>(std::move(shown_.pixels)));
-  Q_EMIT pictureShown();
-}
-
-bool SplatView::settled() const {
-  return !scene_.cloud || (shown_ticket_ == newest_ticket_ && shown_divisor_ == 1);
 }
 
 void SplatView::dropPhoto() {
@@ -327,9 +294,9 @@ QString lightWords(const QString& name, float yaw_rad) {
 }
 
 QString SplatView::title() const {
-  const Channel channel = shown_.channel;
-  QStringList parts{infoOf(channel).title, infoOf(channel).legend};
-  if (channel == Channel::Lit && !light_name_.isEmpty()) {
+  const ChannelInfo& channel = shown_.channel;
+  QStringList parts{QString::fromStdString(channel.title), QString::fromStdString(channel.legend)};
+  if (channel.id == kRelightChannel && !light_name_.isEmpty()) {
     parts << lightWords(light_name_, state_.yaw_rad);
   }
   if (state_.look_through && capture_) {
@@ -348,8 +315,10 @@ QString SplatView::title() const {
 }
 
 QString SplatView::lackText() const {
-  const bool lit = shown_.wanted == Channel::Lit;
-  const QString then = lit ? "; radiance is shown" : "";
+  const bool replaced = shown_.channel.id != shown_.wanted.id;
+  const QString then =
+      replaced ? QString("; %1 is shown").arg(QString::fromStdString(shown_.channel.title).toLower()) : "";
+  const QString wanted = QString::fromStdString(shown_.wanted.title);
   switch (shown_.lack) {
     case Lack::None:
       return {};
@@ -357,8 +326,9 @@ QString SplatView::lackText() const {
       if (!light_being_read_.isEmpty()) return "reading the light" + then;
       return "No light chosen" + then + ". Choose or open a panorama under Display.";
     case Lack::Materials:
-      return QString(infoOf(shown_.wanted).title) + " needs materials, which are not solved yet" + then +
-             ". Run until Materials.";
+      return wanted + " needs materials, which are not solved yet" + then + ". Run until Materials.";
+    case Lack::Attribute:
+      return wanted + " is not in these Gaussians" + then + ".";
   }
   return {};
 }
@@ -369,13 +339,14 @@ QString SplatView::noteText() const {
   if (!photo_note_.isEmpty()) notes << photo_note_;
   const QString lack = lackText();
   if (!lack.isEmpty()) notes << lack;
-  const bool waits = (state_.channel == Channel::Lit || state_.sky) && !light_being_read_.isEmpty();
+  for (const std::string& sentence : shown_.left_out) notes << QString::fromStdString(sentence);
+  const bool waits = (state_.channel.id == kRelightChannel || state_.sky) && !light_being_read_.isEmpty();
   if (lack.isEmpty() && waits) notes << "reading the light " + light_being_read_;
   return notes.join("\n");
 }
 
 void SplatView::paintOver(QPainter& painter) {
-  if (!scene_.cloud) {
+  if (!hasScene()) {
     if (!capture_) {
       paintMessage(painter, rect(), "Drop a capture folder here, or open the sample",
                    "File > Open capture, File > Open project and File > Open sample do the same.");
@@ -391,9 +362,8 @@ void SplatView::paintOver(QPainter& painter) {
     painter.drawRect(photoFrame().adjusted(0.5, 0.5, -0.5, -0.5));
   }
   paintWords(painter, title(), noteText());
-  const bool depth = shown_.channel == Channel::Depth;
-  if (hasPicture(0) && shown_.lack == Lack::None && (depth || shown_.channel == Channel::Roughness))
-    paintLegend(painter, shown_.limits, depth ? "m" : "");
+  if (hasShown() && shown_.lack == Lack::None && shown_.channel.false_color)
+    paintLegend(painter, shown_.limits, QString::fromStdString(shown_.channel.unit));
 }
 
 void SplatView::resizeGL(int, int) { changed(Pace::Moving); }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The splat view: Gaussians rasterised and shaded on a background thread, shown through OpenGL. Coarse while
-// something moves, full as soon as it rests. Values in, signals out; it knows no project and no job.
+// The splat view: a scene through a scene renderer, on a background thread where that draws on the host,
+// shown through OpenGL. Coarse while something moves, full as soon as it rests. Values in, signals out; it
+// knows no project and no job.
 #pragma once
 
-#include <QElapsedTimer>
 #include <QTimer>
+
+#include <atomic>
+#include <map>
 
 #include "core/scene/capture.h"
 #include "viewers/gl/picture_canvas.h"
@@ -15,22 +18,26 @@ class QKeyEvent;
 
 namespace beam {
 
+class ChannelPainter;
+
 class SplatView final : public PictureCanvas {
   Q_OBJECT
 
  public:
-  explicit SplatView(std::shared_ptr<ComputeDevice> device, QWidget* parent = nullptr);
+  // Makes its renderer at once, and another where its OpenGL context is another.
+  explicit SplatView(SceneRendererFactory new_renderer, QWidget* parent = nullptr);
   ~SplatView() override;
 
-  // `caption` names what is shown ("frame 000002"); an empty scene shows the empty state.
-  void setScene(const SplatScene& scene, const QString& caption);
+  const RendererAbilities& abilities() const { return renderer_->abilities(); }
+  // `caption` names what is shown ("frame 000002"); without Gaussians it shows the empty state.
+  void setScene(std::vector<RenderInstance> instances, const QString& caption);
   void setCapture(std::shared_ptr<const CaptureSet> capture, FrameIndex frame);  // null: none
   // `reading`: the light of this name is on its way; until it is there the one before stays.
-  void setLight(std::shared_ptr<const PreparedLight> light, const QString& name, bool reading = false);
+  void setLight(std::shared_ptr<const Environment> light, const QString& name, bool reading = false);
 
   const ViewState& state() const { return state_; }
   void setState(const ViewState& state);
-  void setChannel(Channel channel);
+  void setChannel(const ChannelInfo& channel);
   void setExposure(float stops);
   void setYaw(float yaw_rad);
   void setSky(bool shown);
@@ -51,10 +58,10 @@ class SplatView final : public PictureCanvas {
 
   // Keys of product 4.6; false: not one of ours. The window passes on keys that nobody else wanted.
   bool handleKey(const QKeyEvent& event);
-  // The newest full-size picture is on the screen.
+  // The newest full-size picture is on the screen, as good as it gets.
   bool settled() const;
   // The newest picture that was asked for is on the screen, whatever its size.
-  bool upToDate() const { return !scene_.cloud || shown_ticket_ == newest_ticket_; }
+  bool upToDate() const { return !hasScene() || shown_ticket_ == newest_ticket_; }
   // Frames pass by: every scene is drawn once, at the width and height divided by this; 0: they do not.
   void setPassing(int divisor);
   // What a picture of half size takes while frames pass by: measured, before that told from the full one.
@@ -71,6 +78,8 @@ class SplatView final : public PictureCanvas {
  protected:
   bool event(QEvent* event) override;
   PictureLayout pictureLayout() const override;
+  void initializeGL() override;
+  bool paintUnder(const QRectF& target_px, const QSizeF& framebuffer) override;
   void paintOver(QPainter& painter) override;
   void resizeGL(int width, int height) override;
   void mousePressEvent(QMouseEvent* event) override;
@@ -83,10 +92,26 @@ class SplatView final : public PictureCanvas {
 
  private:
   enum class Pace { Moving, Resting };
+  // A picture that was asked for.
+  struct Wish {
+    SplatRequest request;
+    int divisor = 1;
+    std::uint64_t ticket = 0;
+  };
 
+  struct Drawing;
+
+  bool hasScene() const { return !scene_.instances.empty(); }
+  bool hasShown() const { return hasPicture(0) || shownTexture() != 0; }
+  std::uint32_t shownTexture() const;  // 0: what is shown is no texture
+  void newContext();
+  void leaveContext();
   void changed(Pace pace);
   void request(int divisor);
-  void take(SplatPicture picture, int divisor, std::uint64_t ticket);
+  // On the worker's thread, or with the context current. Any error is a picture that says so.
+  void answer(const Wish& wish, SplatRenderer& renderer, Drawing& drawing,
+              const SplatRenderer::OnPicture& on_picture);
+  void take(SplatPicture picture, const Wish& wish);
   void loadPhoto();
   void dropPhoto();
   void turnHome();
@@ -94,6 +119,8 @@ class SplatView final : public PictureCanvas {
   void nextCamera(int step);
   void cycleChannel(int step);
   ivec2 pixelAt(QPointF position, int width_px, int height_px) const;
+  // A shown channel on the host, read back where it is a texture; empty: it is not in the picture.
+  const Planes& hostValues(std::string_view channel);
   void reportHover(QPointF position);
   Camera cameraFor(int width_px, int height_px) const;
   QRectF photoFrame() const;
@@ -102,26 +129,31 @@ class SplatView final : public PictureCanvas {
   QString noteText() const;
   Bounds sceneBounds() const;
 
+  SceneRendererFactory new_renderer_;
   std::shared_ptr<SplatRenderer> renderer_;
-  SplatScene scene_;
+  RenderScene scene_;  // the light is in it as the state says
   QString caption_, light_name_;
   QString light_being_read_;  // its name; empty: none is
   std::shared_ptr<const CaptureSet> capture_;
   FrameIndex frame_;
-  std::shared_ptr<const PreparedLight> light_;
   ViewState state_;
   bool framed_ = false;              // the orbit was set to the scene once
   bool keep_photo_opacity_ = false;  // the user chose it
 
   SplatPicture shown_;
   int shown_divisor_ = 0;
-  std::uint64_t newest_ticket_ = 0, shown_ticket_ = 0;
-  double full_milliseconds_ = 200;  // of the last full picture
-  double half_milliseconds_ = 0;    // lately; 0: none yet since frames pass by
+  std::atomic<std::uint64_t> newest_ticket_ = 0;
+  std::uint64_t shown_ticket_ = 0;
+  std::optional<Wish> waiting_;                           // for the context
+  std::shared_ptr<Drawing> drawing_;                      // of the newest wish
+  std::map<std::string, Planes, std::less<>> read_back_;  // channels of shown_ that are textures
+  double full_milliseconds_ = 200;                        // of the last full picture
+  double half_milliseconds_ = 0;                          // lately; 0: none yet since frames pass by
   int passing_ = 0;
   std::optional<ViewIndex> photo_of_;  // of frame_
   std::uint64_t photo_ticket_ = 0;     // of the photograph asked for last
   QString photo_note_;
+  std::unique_ptr<ChannelPainter> channel_painter_;  // of textures
 
   QTimer rest_timer_;
   QPointF last_mouse_;

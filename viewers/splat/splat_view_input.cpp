@@ -4,6 +4,8 @@
 #include <QMouseEvent>
 #include <QWheelEvent>
 
+#include <algorithm>
+
 #include "viewers/splat/channel_picture.h"
 #include "viewers/splat/splat_view.h"
 #include "viewers/view_keys.h"
@@ -63,13 +65,14 @@ void SplatView::mouseDoubleClickEvent(QMouseEvent* event) {
 
 // Of what is on the screen, which may lag behind the orbit.
 void SplatView::focusAt(QPointF position) {
-  if (!shown_.gbuffer || shown_.gbuffer->depth_m.empty()) return;
-  const Image<float>& depth = shown_.gbuffer->depth_m;
+  const Planes& depth = hostValues(kDepthChannel);
+  if (depth.empty()) return;
   const ivec2 pixel = pixelAt(position, depth.width, depth.height);
-  const double depth_m = depth(pixel.x, pixel.y);
+  const double depth_m = depth.values[static_cast<std::size_t>(pixel.y) * depth.width + pixel.x];
   if (!(depth_m > 0)) return;
-  const dvec3 ray = rayOf(shown_.camera.intrinsics, dvec2(pixel) + 0.5);
-  const vec3 point(inverse(shown_.camera.camera_from_world) * (depth_m / ray.z * ray));
+  const Camera& camera = shown_.rendered.camera;
+  const dvec3 ray = rayOf(camera.intrinsics, dvec2(pixel) + 0.5);
+  const vec3 point(inverse(camera.camera_from_world) * (depth_m / ray.z * ray));
   leaveCamera();
   state_.orbit.focusOn(point);
   changed(Pace::Resting);
@@ -83,10 +86,11 @@ ivec2 SplatView::pixelAt(QPointF position, int width_px, int height_px) const {
 }
 
 void SplatView::reportHover(QPointF position) {
-  if (!shown_.gbuffer || !shown_.lit || shown_.gbuffer->alpha.empty()) return;
-  const Image<float>& alpha = shown_.gbuffer->alpha;
+  const Planes& values = hostValues(shown_.channel.id);
+  const Planes& alpha = hostValues(kAlphaChannel);
+  if (alpha.empty()) return;
   const ivec2 p = pixelAt(position, alpha.width, alpha.height);
-  const std::string reading = describePixel(*shown_.gbuffer, *shown_.lit, shown_.channel, p.x, p.y);
+  const std::string reading = describePixel(shown_.channel, values, alpha, p.x, p.y);
   Q_EMIT hovered(QString("x %1  y %2   %3").arg(p.x).arg(p.y).arg(QString::fromStdString(reading)));
 }
 
@@ -98,7 +102,11 @@ void SplatView::nextCamera(int step) {
 }
 
 void SplatView::cycleChannel(int step) {
-  setChannel(static_cast<Channel>((static_cast<int>(state_.channel) + step + kChannelCount) % kChannelCount));
+  const std::vector<ChannelInfo>& all = shownChannels();
+  const int count = static_cast<int>(all.size());
+  const auto now = std::find(all.begin(), all.end(), state_.channel);
+  const int at = now == all.end() ? 0 : static_cast<int>(now - all.begin());
+  setChannel(all[(at + step + count) % count]);
 }
 
 bool SplatView::handleKey(const QKeyEvent& event) {
@@ -110,8 +118,9 @@ bool SplatView::handleKey(const QKeyEvent& event) {
   const bool shift = (event.modifiers() & Qt::ShiftModifier) != 0;
   const int key = event.key();
   const bool pad = (event.modifiers() & Qt::KeypadModifier) != 0;  // of which some digits are directions
-  if (!pad && key >= Qt::Key_1 && key < Qt::Key_1 + kChannelCount) {
-    setChannel(static_cast<Channel>(key - Qt::Key_1));
+  for (const ChannelInfo& channel : shownChannels()) {
+    if (pad || key != Qt::Key_0 + channel.key) continue;
+    setChannel(channel);
     return true;
   }
   switch (key) {
@@ -119,7 +128,7 @@ bool SplatView::handleKey(const QKeyEvent& event) {
       cycleChannel(shift ? -1 : 1);
       return true;
     case Qt::Key_M:
-      setChannel(Channel::Lit);
+      setChannel(channelOf(kRelightChannel));
       return true;
     case Qt::Key_F:
       frameSubject();

@@ -268,7 +268,7 @@ TEST_F(RoundTrip, ReturnsTheColorAndTheRelitPicture) {
                                   *device, progress);
   const Materials materials = fitMaterials(sourceOf(maps), cloud, kRoughness,
                                            {.solver = "linear", .regularization = 0.01}, *device, progress);
-  const PreparedLight evening(eveningLight());
+  const PreparedLight evening = prepareLight(eveningLight());
   double rho_error = 0, lit_error = 0, lit = 0;
   int count = 0;
   GBufferRenderer renderer(*device);

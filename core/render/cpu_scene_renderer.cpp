@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/cpu_scene_renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/render/deferred.h"
+
+namespace beam {
+namespace {
+
+using Draw = void (RasterView::*)(Planes&) const;
+
+// The channels that come out of the rasterised view as they are.
+const std::map<std::string, Draw>& drawnChannels() {
+  static const std::map<std::string, Draw> all = {
+      {kRgbChannel, &RasterView::radiance},        {kAlphaChannel, &RasterView::alpha},
+      {kDepthChannel, &RasterView::depth},         {kNormalChannel, &RasterView::normal},
+      {kBaseColorChannel, &RasterView::baseColor}, {kOcclusionChannel, &RasterView::occlusion},
+      {kRoughnessChannel, &RasterView::roughness}};
+  return all;
+}
+
+// Memory of pictures that nobody looks at any more: fresh pages cost more than what is written into them.
+class PlanesPool {
+ public:
+  std::shared_ptr<Planes> take() {
+    const auto idle =
+        std::find_if(all_.begin(), all_.end(), [](const auto& p) { return p.use_count() == 1; });
+    if (idle != all_.end()) {
+      std::atomic_thread_fence(std::memory_order_acquire);  // after the last reader let go
+      std::rotate(idle, idle + 1, all_.end());
+    } else {
+      if (all_.size() >= kMost) all_.erase(all_.begin());
+      all_.push_back(std::make_shared<Planes>());
+    }
+    return all_.back();
+  }
+
+ private:
+  static constexpr std::size_t kMost = 8;
+  std::vector<std::shared_ptr<Planes>> all_;  // the newest last
+};
+
+class CpuSceneRenderer final : public SceneRenderer {
+ public:
+  CpuSceneRenderer(std::shared_ptr<ComputeDevice> device, std::shared_ptr<PreparedLights> lights,
+                   std::size_t kept_sizes)
+      : device_(std::move(device)),
+        lights_(lights ? std::move(lights) : std::make_shared<PreparedLights>()),
+        renderer_(*device_, kept_sizes),
+        resident_(device_->newResidentScene()) {
+    abilities_.id = "cpu";
+    abilities_.title = device_->info().title;
+    for (const ChannelInfo& c : channels())
+      if (c.id == kRelightChannel || drawnChannels().contains(c.id)) abilities_.channels.push_back(c.id);
+    abilities_.attributes = true;
+    abilities_.lights = {{"environment", false}};
+  }
+
+  const RendererAbilities& abilities() const override { return abilities_; }
+
+ private:
+  void doLoad(const RenderScene& scene) override {
+    if (scene.instances != instances_ || !instances_loaded_) {
+      instances_loaded_ = false;
+      view_ = nullptr;
+      resident_->load(scene.instances);
+      instances_ = scene.instances;
+      instances_loaded_ = true;
+    }
+    environment_ = scene.lighting.environment;
+    if (scene.environment == panorama_) return;
+    light_ = scene.environment ? lights_->of(scene.environment) : nullptr;
+    panorama_ = scene.environment;
+  }
+
+  void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
+              const OnPicture& on_picture) override {
+    rasterize(camera, channels);
+    progress.check();
+    RenderedPicture picture;
+    picture.camera = camera;
+    for (const ChannelInfo& channel : channels) {
+      picture.channels.push_back({channel.id, valuesOf(channel), 0});
+      progress.check();
+    }
+    on_picture(std::move(picture));
+  }
+
+  // Of the camera that was drawn last nothing is drawn again.
+  void rasterize(const Camera& camera, std::span<const ChannelInfo> channels) {
+    std::vector<std::string> further;
+    for (const ChannelInfo& c : channels)
+      if (!c.attribute.empty() && !drawnChannels().contains(c.id)) further.push_back(c.attribute);
+    if (view_ && camera_ == camera && further == further_) return;
+    view_ = nullptr;
+    lit_ = nullptr;
+    view_ = &renderer_.draw(*resident_, camera, further);
+    camera_ = camera;
+    further_ = std::move(further);
+  }
+
+  std::shared_ptr<const Planes> valuesOf(const ChannelInfo& channel) {
+    if (channel.id == kRelightChannel) return lit();
+    auto values = pool_.take();
+    const auto drawn = drawnChannels().find(channel.id);
+    if (drawn != drawnChannels().end())
+      (view_->*drawn->second)(*values);
+    else
+      view_->attribute(channel.attribute, *values);
+    return values;
+  }
+
+  std::shared_ptr<const Planes> lit() {
+    if (lit_ && lit_by_ == light_ && lit_as_ == environment_) return lit_;
+    lit_ = nullptr;
+    auto values = pool_.take();
+    view_->relit(*light_,
+                 {.yaw_rad = static_cast<float>(environment_.rotation_deg * kPi / 180),
+                  .exposure = static_cast<float>(environment_.gain)},
+                 *values);
+    lit_by_ = light_;
+    lit_as_ = environment_;
+    return lit_ = values;
+  }
+
+  std::shared_ptr<ComputeDevice> device_;
+  std::shared_ptr<PreparedLights> lights_;
+  RendererAbilities abilities_;
+  GBufferRenderer renderer_;
+  std::unique_ptr<ResidentScene> resident_;
+  std::vector<RenderInstance> instances_;
+  bool instances_loaded_ = false;
+  EnvironmentLight environment_;
+  std::shared_ptr<const Environment> panorama_;
+  std::shared_ptr<const PreparedLight> light_;  // of panorama_
+  const RasterView* view_ = nullptr;            // of camera_ and further_; null: none yet
+  Camera camera_;
+  std::vector<std::string> further_;
+  std::shared_ptr<const Planes> lit_;  // of view_, lit_by_ and lit_as_; null: none yet
+  std::shared_ptr<const PreparedLight> lit_by_;
+  EnvironmentLight lit_as_;
+  PlanesPool pool_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneRenderer> newCpuSceneRenderer(std::shared_ptr<ComputeDevice> device,
+                                                   std::shared_ptr<PreparedLights> lights,
+                                                   std::size_t kept_sizes) {
+  return std::make_unique<CpuSceneRenderer>(std::move(device), std::move(lights), kept_sizes);
+}
+
+SceneRendererFactory cpuSceneRenderers(std::shared_ptr<ComputeDevice> device, std::size_t kept_sizes) {
+  return [device = std::move(device), lights = std::make_shared<PreparedLights>(), kept_sizes] {
+    return newCpuSceneRenderer(device, lights, kept_sizes);
+  };
+}
+
+}  // namespace beam

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/scene_renderer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+
+namespace beam {
+namespace {
+
+const LightAbility* abilityOf(const RendererAbilities& abilities, std::string_view kind) {
+  const auto found = std::find_if(abilities.lights.begin(), abilities.lights.end(),
+                                  [&](const LightAbility& a) { return a.kind == kind; });
+  return found == abilities.lights.end() ? nullptr : &*found;
+}
+
+bool asksForShadows(const Light& light) {
+  return std::visit(
+      [](const auto& kind) {
+        if constexpr (requires { kind.shadows; }) return kind.shadows;
+        return false;
+      },
+      light.kind);
+}
+
+std::string nameOf(const Light& light) { return light.title.empty() ? light.id : light.title; }
+
+void addLights(const Lighting& lighting, const RendererAbilities& abilities,
+               std::vector<std::string>& sentences) {
+  for (const Light& light : lighting.lights) {
+    if (!light.enabled) continue;
+    const LightAbility* ability = abilityOf(abilities, kindOf(light));
+    if (!ability) {
+      sentences.push_back(fmt::format("light \"{}\" ({}) is not drawn by the renderer {}", nameOf(light),
+                                      kindOf(light), abilities.id));
+    } else if (asksForShadows(light) && !ability->shadows) {
+      sentences.push_back(fmt::format("light \"{}\" ({}) casts no shadows in the renderer {}", nameOf(light),
+                                      kindOf(light), abilities.id));
+    }
+  }
+}
+
+}  // namespace
+
+bool draws(const RendererAbilities& abilities, const ChannelInfo& channel) {
+  const auto& ids = abilities.channels;
+  return (abilities.attributes && !channel.attribute.empty()) ||
+         std::find(ids.begin(), ids.end(), channel.id) != ids.end();
+}
+
+const RenderedChannel* channelIn(const RenderedPicture& picture, std::string_view id) {
+  const auto found = std::find_if(picture.channels.begin(), picture.channels.end(),
+                                  [&](const RenderedChannel& c) { return c.id == id; });
+  return found == picture.channels.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> leftOut(const RenderScene& scene, const RendererAbilities& abilities) {
+  std::vector<std::string> sentences = scene.missing;
+  if (scene.environment && scene.lighting.environment.enabled && !abilityOf(abilities, "environment"))
+    sentences.push_back(fmt::format("light from all around is not drawn by the renderer {}", abilities.id));
+  addLights(scene.lighting, abilities, sentences);
+  if (!scene.meshes.empty() && !abilities.meshes)
+    sentences.push_back(fmt::format("meshes are not drawn by the renderer {}", abilities.id));
+  if (scene.ground.enabled && !abilities.ground)
+    sentences.push_back(fmt::format("the ground is not drawn by the renderer {}", abilities.id));
+  return sentences;
+}
+
+std::vector<std::string> SceneRenderer::load(const RenderScene& scene) {
+  loaded_ = false;
+  doLoad(scene);
+  scene_ = scene;
+  loaded_ = true;
+  return leftOut(scene, abilities());
+}
+
+void SceneRenderer::draw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
+                         const OnPicture& on_picture) {
+  if (!loaded_) throw Error(Error::Kind::Bug, "scene renderer: draw before load");
+  for (const ChannelInfo& channel : channels) {
+    if (!draws(abilities(), channel)) {
+      throw Error(Error::Kind::Usage,
+                  fmt::format("the renderer {} does not draw {}: it draws {}", abilities().id, channel.id,
+                              fmt::join(abilities().channels, ", ")));
+    }
+    if (lackOf(channel, scene_) != Lack::None) {
+      throw Error(Error::Kind::Bug, fmt::format("scene renderer: the scene lacks what {} needs", channel.id));
+    }
+  }
+  progress.check();
+  doDraw(camera, channels, progress, on_picture);
+}
+
+}  // namespace beam
