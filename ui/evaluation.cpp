@@ -7,6 +7,7 @@
 
 #include "core/base/log.h"
 #include "core/io/file.h"
+#include "core/work/scores.h"
 
 namespace beam {
 namespace {
@@ -47,7 +48,7 @@ QString title(const std::string& channel) {
 
 Evaluation readEvaluation(const std::filesystem::path& project) {
   Evaluation evaluation;
-  const std::filesystem::path file = project / "evaluation.json";
+  const std::filesystem::path file = project / kEvaluationFile;
   std::error_code failed;
   if (!std::filesystem::exists(file, failed)) return evaluation;
   try {

@@ -2,6 +2,7 @@
 // Runs as the window starts and shows them; and what of a run's preview is in view.
 #include <algorithm>
 
+#include "core/base/duration_text.h"
 #include "ui/log_panel.h"
 #include "ui/main_window.h"
 #include "ui/message_panel.h"
@@ -141,7 +142,7 @@ void MainWindow::showFinished(const JobFinished& outcome) {
   run_ = {};
   timeline_->setRun(run_);
   rail_->setRunning({}, 0);
-  const QString took = durationText(outcome.seconds);
+  const QString took = QString::fromStdString(durationText(outcome.seconds));
   const QString steps = QString("%1 computed, %2 there already")
                             .arg(countText(outcome.computed, "step"), numberText(outcome.reused));
   switch (outcome.outcome) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/duration_text.h"
 #include "ui/words.h"
 
 namespace beam {
@@ -34,10 +35,10 @@ QString scoutText(const ScoutPlan& plan, int every) {
   words +=
       QString("%1 of %2 %3 solved with the preset %4")
           .arg(numberText(solved), countText(plan.frames, "frame"), solved == 1 ? "is" : "are", plan.preset);
-  words +=
-      plan.seconds_a_frame > 0
-          ? QString(":\nabout %1, as frames took so far.").arg(durationText(solved * plan.seconds_a_frame))
-          : QString(";\nhow long one takes is known after the first.");
+  words += plan.seconds_a_frame > 0
+               ? QString(":\nabout %1, as frames took so far.")
+                     .arg(QString::fromStdString(durationText(solved * plan.seconds_a_frame)))
+               : QString(";\nhow long one takes is known after the first.");
   if (between > 0) {
     words += "\n" + countText(between, "between is interpolated", "between are interpolated") +
              ": to look at, without scores.";

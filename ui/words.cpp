@@ -112,13 +112,6 @@ QString countText(std::int64_t n, const QString& one, const QString& many) {
   return numberText(n) + " " + (n == 1 ? one : many.isEmpty() ? one + "s" : many);
 }
 
-QString durationText(double seconds) {
-  const auto s = static_cast<long long>(std::llround(seconds));
-  if (s < 60) return QString("%1 s").arg(s);
-  if (s < 3600) return QString("%1 min %2 s").arg(s / 60).arg(s % 60, 2, 10, QChar('0'));
-  return QString("%1 h %2 min").arg(s / 3600).arg(s % 3600 / 60, 2, 10, QChar('0'));
-}
-
 QString stepTitle(const std::vector<StageInfo>& stages, const std::string& step) {
   QString stage;
   const StepInfo* info = findStep(stages, step, stage);

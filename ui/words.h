@@ -20,9 +20,6 @@ QString figureText(double value);
 // "1 frame", "1,200 frames". `one`: the singular; `many`: where an s at its end will not do.
 QString countText(std::int64_t n, const QString& one, const QString& many = {});
 
-// "35 s", "4 min 10 s", "1 h 05 min".
-QString durationText(double seconds);
-
 // "surface.fit" -> "Surface: fit appearance". An id that no stage has stays as it is.
 QString stepTitle(const std::vector<StageInfo>& stages, const std::string& step);
 // The ids of steps in a sentence as their titles: what the core and the command line say, as the window does.

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 
 #include "app/cli/commands.h"
-#include "app/cli/selection.h"
 #include "core/base/error.h"
-#include "core/io/splat_ply.h"
 #include "core/render/cpu_scene_renderer.h"
-#include "core/scene/transform.h"
-#include "core/stages/project_sequence.h"
-#include "core/stages/render_channels.h"
+#include "core/scene/channel.h"
+#include "core/work/export_frames.h"
+#include "core/work/render_frames.h"
 
 namespace beam {
 namespace {
@@ -30,36 +27,28 @@ bool wantsWorld(const std::string& frame_of) {
   throw Error(Error::Kind::Usage, fmt::format("--frame-of expects capture or world, found \"{}\"", frame_of));
 }
 
-// Names those of the frames that are interpolated.
-void tellInterpolated(const GaussianSequence& sequence, const std::vector<FrameIndex>& frames,
-                      Console& console) {
-  std::vector<std::string> names;
-  for (const FrameIndex f : frames) {
-    if (sequence.content(f).interpolated) names.push_back(nameOf(sequence, f));
-  }
+void tellInterpolated(const std::vector<std::string>& names, Console& console) {
   if (!names.empty())
     console.print(fmt::format("interpolated, not solved: frames {}", fmt::join(names, ", ")));
 }
 
 int runRender(const RenderFlags& flags, CommandContext& context) {
-  const Project project = Project::open(flags.project, context.services.pipeline);
-  const auto sequence = sequenceOf(project, Shows::Between);
-  RenderRequest request;
-  request.channels = flags.channels;
-  request.views = selectViews(flags.cameras, project.capture());
-  request.frames = selectSolvedFrames(flags.frames, *sequence);
-  request.world_frame = wantsWorld(flags.frame_of);
-  request.out = flags.out;
+  RenderFramesRequest request{.project = Project::open(flags.project, context.services.pipeline),
+                              .channels = flags.channels,
+                              .cameras = flags.cameras,
+                              .frames = flags.frames,
+                              .environments = {},
+                              .world_frame = wantsWorld(flags.frame_of),
+                              .out = flags.out};
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
-  std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
+  const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
-  renderChannels(*sequence, request, *newCpuSceneRenderer(std::move(device)), progress);
+  const RenderFramesOutcome outcome = renderFrames(request, *newCpuSceneRenderer(*device), progress);
   context.console.endProgress();
-  context.console.print(fmt::format("wrote {} of {} camera{} and {} frame{} to \"{}\"",
-                                    fmt::join(flags.channels, ", "), request.views.size(),
-                                    request.views.size() == 1 ? "" : "s", request.frames.size(),
-                                    request.frames.size() == 1 ? "" : "s", flags.out));
-  tellInterpolated(*sequence, request.frames, context.console);
+  context.console.print(fmt::format(
+      "wrote {} of {} camera{} and {} frame{} to \"{}\"", fmt::join(flags.channels, ", "), outcome.cameras,
+      outcome.cameras == 1 ? "" : "s", outcome.frames, outcome.frames == 1 ? "" : "s", flags.out));
+  tellInterpolated(outcome.interpolated, context.console);
   return 0;
 }
 
@@ -71,31 +60,14 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
   if (flags.format != "ply") {
     throw Error(Error::Kind::Usage, fmt::format("--format expects ply, found \"{}\"", flags.format));
   }
-  const Project project = Project::open(flags.project, context.services.pipeline);
-  const auto sequence = sequenceOf(project, Shows::Between);
-  const std::vector<FrameIndex> frames = selectSolvedFrames(flags.frames, *sequence);
-  const bool world = wantsWorld(flags.frame_of);
-  const Similarity3 capture_from_world = sequence->captureFromWorld();
-  std::filesystem::create_directories(flags.out);
+  const ExportRequest request{Project::open(flags.project, context.services.pipeline), flags.frames,
+                              wantsWorld(flags.frame_of), flags.out};
   Progress progress(context.stop, context.console.listener());
-  progress.expect(static_cast<std::int64_t>(frames.size()));
-  for (const FrameIndex frame : frames) {
-    const FrameLabel& label = sequence->frames()[static_cast<std::size_t>(frame.value)];
-    const std::shared_ptr<const GaussianFrame> r = sequence->load(frame);
-    if (!r)
-      throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", label.name));
-    const GaussianCloud cloud = world ? r->cloud : transformed(r->cloud, capture_from_world);
-    std::optional<Materials> materials = r->materials;
-    if (materials && !world) materials = transformed(*materials, capture_from_world);
-    const long long number = std::max(0LL, label.number);
-    writeSplatPly(std::filesystem::path(flags.out) / fmt::format("frame.{:06}.ply", number), cloud,
-                  materials ? &*materials : nullptr);
-    progress.step();
-  }
+  const ExportOutcome outcome = exportFrames(request, progress);
   context.console.endProgress();
-  context.console.print(
-      fmt::format("wrote {} frame{} to \"{}\"", frames.size(), frames.size() == 1 ? "" : "s", flags.out));
-  tellInterpolated(*sequence, frames, context.console);
+  context.console.print(fmt::format("wrote {} frame{} to \"{}\"", outcome.files.size(),
+                                    outcome.files.size() == 1 ? "" : "s", flags.out));
+  tellInterpolated(outcome.interpolated, context.console);
   return 0;
 }
 
@@ -106,7 +78,9 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("render", "Write pictures of solved frames: colour, materials, geometry, relit");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command->add_option("--channels", flags->channels, fmt::format("Some of {}", fmt::join(channelIds(), ", ")))
+  command
+      ->add_option("--channels", flags->channels,
+                   fmt::format("Some of {}", fmt::join(channelIds(), ", ")))
       ->delimiter(',');
   command->add_option("--cameras", flags->cameras, "test, train, all or camera names");
   command->add_option("--frames", flags->frames,

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.h"
-#include "app/cli/quality_history.h"
 #include "app/cli/run_flags.h"
 #include "core/base/error.h"
 #include "core/pipeline/project_report.h"
+#include "core/work/quality_history.h"
 
 namespace beam {
 namespace fs = std::filesystem;

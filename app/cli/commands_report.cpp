@@ -3,171 +3,28 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "app/cli/commands.h"
-#include "app/cli/evaluate_over_time.h"
-#include "app/cli/report_page.h"
-#include "core/base/error.h"
-#include "core/base/json_words.h"
-#include "core/base/log.h"
-#include "core/io/file.h"
-#include "core/stages/project_sequence.h"
+#include "core/work/report.h"
 
 namespace beam {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct ReportFlags {
   std::string project, out;
   DeviceChoice device;
 };
 
-std::vector<std::pair<std::string, std::string>> factsOf(const Project& project) {
-  const CaptureSet& capture = project.capture();
-  const auto held_out = std::count_if(capture.views.begin(), capture.views.end(),
-                                      [](const View& v) { return v.split == Split::Test; });
-  const std::size_t train = capture.views.size() - static_cast<std::size_t>(held_out);
-  std::vector<std::pair<std::string, std::string>> facts = {
-      {"Capture", fmt::format("{}: {} training and {} held-out cameras, {} frames, {}", capture.name, train,
-                              held_out, capture.frames.size(), project.imported().layout)},
-      {"Preset", project.document().preset}};
-  for (const StageInfo& stage : project.setup().stages.infos()) {
-    const std::string reason = project.blockedReason(stage.id);
-    if (!reason.empty()) facts.emplace_back(stage.title, reason);
-  }
-  return facts;
-}
-
-// First, middle, last and worst of the frames with results, in order of time.
-std::vector<FrameIndex> shownFrames(const QualityHistory& history) {
-  std::vector<std::size_t> chosen = worstFrames(history, 1);
-  if (!history.frames.empty()) {
-    const std::size_t last = history.frames.size() - 1;
-    chosen.insert(chosen.end(), {0, last / 2, last});
-  }
-  std::sort(chosen.begin(), chosen.end());
-  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-  std::vector<FrameIndex> frames;
-  frames.reserve(chosen.size());
-  for (const std::size_t f : chosen) frames.push_back(history.frames[f].frame);
-  return frames;
-}
-
-// A held-out camera, a training camera, and the training camera that scores least in the worst frame.
-std::vector<std::string> shownCameras(const Project& project, const QualityHistory& history) {
-  std::vector<std::string> cameras;
-  for (const Split split : {Split::Train, Split::Test}) {
-    const auto& views = project.capture().views;
-    const auto found =
-        std::find_if(views.begin(), views.end(), [&](const View& v) { return v.split == split; });
-    if (found != views.end()) cameras.push_back(found->name);
-  }
-  for (const std::size_t f : worstFrames(history, 1)) {
-    const FrameQuality& q = history.frames[f];
-    cameras.push_back(q.views[meanOf(q.views, false).worst].camera);
-  }
-  return cameras;
-}
-
-// What `beam evaluate` left in the project; nothing when it never ran.
-std::vector<std::pair<std::string, std::map<std::string, double>>> evaluationOf(const Project& project) {
-  const fs::path file = project.folder() / "evaluation.json";
-  std::vector<std::pair<std::string, std::map<std::string, double>>> table;
-  if (!fs::exists(file)) return table;
-  try {
-    const auto json = nlohmann::ordered_json::parse(readTextFile(file));
-    for (const auto& [map, scores] : json.items()) {
-      std::map<std::string, double> row;
-      if (!scores.is_object()) continue;
-      for (const auto& [name, value] : scores.items()) {
-        if (value.is_number()) row[name] = value.template get<double>();
-      }
-      if (!row.empty()) table.emplace_back(map, std::move(row));
-    }
-  } catch (const nlohmann::json::exception& e) {
-    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(),
-               jsonComplaint(e));
-  }
-  return table;
-}
-
-void addScore(QualityHistory& history, const std::string& frame, const std::string& name, double value) {
-  const auto found = std::find_if(history.frames.begin(), history.frames.end(),
-                                  [&](const FrameQuality& q) { return q.name == frame; });
-  if (found != history.frames.end()) found->scores["evaluate." + name] = value;
-}
-
-// One figure a map is enough for a curve; the table has them all.
-bool isDrawn(const std::string& score) {
-  return !score.ends_with(".ssim") && !score.ends_with(".psnr_mask") &&
-         score.find("_scaled.") == std::string::npos;
-}
-
-// What `beam evaluate` last found of the frames, as further scores.
-void addEvaluatedFrames(const Project& project, QualityHistory& history) {
-  const fs::path file = project.folder() / kEvaluationFramesFile;
-  if (!fs::exists(file)) return;
-  try {
-    const auto json = nlohmann::json::parse(readTextFile(file));
-    for (const auto& [frame, entry] : json.at("over_time").at("frames").items()) {
-      for (const auto& [name, value] : entry.at("scores").items())
-        if (isDrawn(name)) addScore(history, frame, name, value.template get<double>());
-    }
-  } catch (const nlohmann::json::exception& e) {
-    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(),
-               jsonComplaint(e));
-  }
-}
-
-// Flicker along tracked Gaussians, of the results as they are now.
-void addFlicker(const GaussianSequence& sequence, ComputeDevice& device, Progress& progress,
-                QualityHistory& history) {
-  std::vector<FrameIndex> frames;
-  for (const FrameQuality& q : history.frames) frames.push_back(q.frame);
-  PictureScores each;
-  scoreMotion(sequence, {}, frames, nullptr, device, progress, each);
-  for (const auto& [frame, cameras] : each) {
-    for (const auto& [name, value] : cameras.at("")) addScore(history, frame, name, value);
-  }
-}
-
 int runReport(const ReportFlags& flags, CommandContext& context) {
-  const Project project = Project::open(flags.project, context.services.pipeline);
-  const auto sequence = sequenceOf(project, Shows::Solved);
-  ReportPage page{project.name(), versionText(), factsOf(project), {}, sequence->frames().size(), {}, {}, {}};
-  page.history = qualityHistory(project);
-  if (page.history.frames.empty()) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
-                                               project.folder().string()));
-  }
-  for (const auto& [key, value] : project.document().settings) page.settings.emplace_back(key, toText(value));
+  const ReportRequest request{Project::open(flags.project, context.services.pipeline), flags.out};
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
-  addEvaluatedFrames(project, page.history);
-  {
-    Progress part = progress.part(0.5, "compare frames");
-    addFlicker(*sequence, *device, part, page.history);
-  }
-  {
-    Progress part = progress.part(0.5, "contact sheet");
-    page.pictures = contactSheet(*sequence, project.capture(), shownFrames(page.history),
-                                 shownCameras(project, page.history), *device, part);
-  }
-  page.evaluation = evaluationOf(project);
-  writeFileAtomically(flags.out, toHtml(page));
+  const ReportOutcome outcome = report(request, *device, progress);
   context.console.endProgress();
-  for (const LeftOutCamera& c : page.history.left_out)
-    context.console.warning(fmt::format("left out of the fit: {}", toText(c, page.history.defects)));
-  if (const std::string loss = toText(page.history.loss); !loss.empty()) context.console.warning(loss);
-  for (const Defect& d : page.history.defects)
-    context.console.warning(
-        fmt::format("camera {} {} (frames {})", d.camera, d.text, fmt::join(d.frames, ", ")));
-  context.console.print(fmt::format("wrote the report of {} frame{} to \"{}\"", page.history.frames.size(),
-                                    page.history.frames.size() == 1 ? "" : "s", flags.out));
+  for (const std::string& finding : outcome.findings) context.console.warning(finding);
+  context.console.print(fmt::format("wrote the report of {} frame{} to \"{}\"", outcome.frames,
+                                    outcome.frames == 1 ? "" : "s", flags.out));
   return 0;
 }
 

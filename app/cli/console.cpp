@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 
+#include "core/base/duration_text.h"
 #include "core/base/log.h"
 
 namespace beam {
@@ -43,13 +43,6 @@ std::string barText(double fraction) {
 }
 
 }  // namespace
-
-std::string durationText(double seconds) {
-  const long s = std::lround(seconds);
-  if (s < 60) return fmt::format("{} s", s);
-  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
-  return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
-}
 
 Console::Console() {
   terminal_ = ::isatty(STDERR_FILENO) != 0;

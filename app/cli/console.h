@@ -54,7 +54,4 @@ class Console {
   int sink_ = 0;
 };
 
-// "1 h 05 min", "3 min 20 s", "12 s".
-std::string durationText(double seconds);
-
 }  // namespace beam

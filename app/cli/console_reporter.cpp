@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/duration_text.h"
+
 namespace beam {
 namespace {
 

@@ -154,6 +154,10 @@ std::unique_ptr<SceneRenderer> newCpuSceneRenderer(std::shared_ptr<ComputeDevice
   return std::make_unique<CpuSceneRenderer>(std::move(device), std::move(lights), kept_sizes);
 }
 
+std::unique_ptr<SceneRenderer> newCpuSceneRenderer(ComputeDevice& device) {
+  return newCpuSceneRenderer(std::shared_ptr<ComputeDevice>(std::shared_ptr<void>(), &device));
+}
+
 SceneRendererFactory cpuSceneRenderers(std::shared_ptr<ComputeDevice> device, std::size_t kept_sizes) {
   return [device = std::move(device), lights = std::make_shared<PreparedLights>(), kept_sizes] {
     return newCpuSceneRenderer(device, lights, kept_sizes);

@@ -18,6 +18,9 @@ std::unique_ptr<SceneRenderer> newCpuSceneRenderer(std::shared_ptr<ComputeDevice
                                                    std::shared_ptr<PreparedLights> lights = nullptr,
                                                    std::size_t kept_sizes = 1);
 
+// `device` outlives it.
+std::unique_ptr<SceneRenderer> newCpuSceneRenderer(ComputeDevice& device);
+
 // Makes renderers that share prepared lights.
 SceneRendererFactory cpuSceneRenderers(std::shared_ptr<ComputeDevice> device, std::size_t kept_sizes = 1);
 

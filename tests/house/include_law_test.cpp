@@ -35,8 +35,11 @@ const std::map<std::string, Rooms>& allowed() {
       {"core/method", plus(kScene, {"core/render", "core/optim"})},
       {"core/sample", plus(kScene, {"core/io", "core/render"})},
       {"core/stages", plus(kScene, {"core/io", "core/render", "core/method", "core/pipeline"})},
+      {"core/work", plus(kScene, {"core/io", "core/render", "core/optim", "core/pipeline", "core/method",
+                                  "core/sample", "core/stages"})},
       {"viewers", plus(kScene, {"core/render"})},
-      {"ui", plus(kScene, {"core/io", "core/pipeline", "core/render", "core/stages", "viewers"})},
+      {"ui",
+       plus(kScene, {"core/io", "core/pipeline", "core/render", "core/stages", "core/work", "viewers"})},
   };
   return kLaw;
 }
@@ -108,7 +111,8 @@ TEST(IncludeLaw, ForeignWordsStayInTheirRooms) {
       {{"GL/"}, {"viewers/"}},
       {{"nlohmann/"},
        {"core/base/fields_json", "core/io/", "core/pipeline/", "core/sample/", "core/stages/score_files",
-        "core/stages/screening_file", "core/stages/track_files", "app/", "ui/"}},
+        "core/stages/screening_file", "core/stages/track_files", "core/work/ground_truth",
+        "core/work/report.cpp", "core/work/scores", "app/", "ui/"}},
       {{"opencv2/"}, {"core/io/", "core/image/"}},
       {{"Imf", "OpenEXR/", "Imath"}, {"core/io/"}},
       {{"embree"}, {"core/render/cpu/embree_tracer.cpp", "core/sample/"}},

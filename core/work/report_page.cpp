@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/report_page.h"
+#include "core/work/report_page.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "app/cli/console.h"
-#include "app/cli/report_style.h"
-#include "app/cli/svg_chart.h"
+#include "core/base/duration_text.h"
+#include "core/work/report_style.h"
+#include "core/work/svg_chart.h"
 
 namespace beam {
 namespace {

@@ -3,13 +3,13 @@
 // to load, no script. Well-formed XML too. A pure function of what it shows.
 #pragma once
 
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "app/cli/contact_sheet.h"
-#include "app/cli/quality_history.h"
+#include "core/work/contact_sheet.h"
+#include "core/work/quality_history.h"
+#include "core/work/scores.h"
 
 namespace beam {
 
@@ -20,8 +20,7 @@ struct ReportPage {
   std::size_t frames_in_capture = 0;
   QualityHistory history;
   std::vector<ContactRow> pictures;
-  // The last evaluation of the project: map, scores by name.
-  std::vector<std::pair<std::string, std::map<std::string, double>>> evaluation;
+  ScoreTable evaluation;  // the last one of the project
 };
 
 std::string toHtml(const ReportPage& page);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/ground_truth.h"
+#include "core/work/ground_truth.h"
 
 #include <fmt/format.h>
 
@@ -208,8 +208,6 @@ std::vector<std::string> strings(const nlohmann::json& j, const char* key) {
   return j.contains(key) ? j[key].get<std::vector<std::string>>() : std::vector<std::string>{};
 }
 
-std::size_t widthOf(std::string_view column) { return std::max<std::size_t>(15, column.size() + 2); }
-
 }  // namespace
 
 GroundTruth openGroundTruth(const fs::path& folder) {
@@ -274,50 +272,6 @@ ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progres
                             pictures.string(), t.folder.string()));
   }
   return out;
-}
-
-std::string scoreText(const ScoreTable& table) {
-  static const std::vector<std::pair<const char*, const char*>> kColumns = {{"psnr", "{:.3f}"},
-                                                                            {"ssim", "{:.4f}"},
-                                                                            {"psnr_mask", "{:.3f}"},
-                                                                            {"angle_deg", "{:.3f}"},
-                                                                            {"mae_mm", "{:.3f}"},
-                                                                            {"chamfer_mm", "{:.3f}"},
-                                                                            {"pred_to_gt_mm", "{:.3f}"},
-                                                                            {"gt_to_pred_mm", "{:.3f}"},
-                                                                            {"median_mm", "{:.3f}"},
-                                                                            {"p95_mm", "{:.3f}"},
-                                                                            {"radiance", "{:.5f}"},
-                                                                            {"base_color", "{:.5f}"},
-                                                                            {"gaussian_radiance", "{:.5f}"},
-                                                                            {"gaussian_base_color", "{:.5f}"},
-                                                                            {"pictures", "{:.0f}"}};
-  std::vector<std::pair<const char*, const char*>> columns;
-  for (const auto& c : kColumns) {
-    if (std::any_of(table.begin(), table.end(),
-                    [&](const auto& row) { return row.second.contains(c.first); }))
-      columns.push_back(c);
-  }
-  std::string text = fmt::format("{:<28}", "map");
-  for (const auto& c : columns) text += fmt::format("{:>{}}", c.first, widthOf(c.first));
-  for (const auto& [name, scores] : table) {
-    text += fmt::format("\n{:<28}", name);
-    for (const auto& [key, format] : columns) {
-      const auto found = scores.find(key);
-      text += fmt::format("{:>{}}",
-                          found == scores.end() ? "-" : fmt::format(fmt::runtime(format), found->second),
-                          widthOf(key));
-    }
-  }
-  return text;
-}
-
-std::string scoreJson(const ScoreTable& table) {
-  nlohmann::ordered_json j = nlohmann::ordered_json::object();
-  for (const auto& [name, scores] : table) {
-    for (const auto& [key, value] : scores) j[name][key] = value;
-  }
-  return j.dump(1);
 }
 
 }  // namespace beam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words of the command line that choose views of a capture and frames of a sequence.
+// Words that choose views of a capture and frames of a sequence, as the command line has them.
 #pragma once
 
 #include <string>
@@ -16,5 +16,9 @@ std::vector<View> selectViews(const std::string& words, const CaptureSet& captur
 
 // "all": every frame with Gaussians; else a frame list. Throws Error{Data} when nothing is solved.
 std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const GaussianSequence& sequence);
+
+// Names of those of the frames that are interpolated.
+std::vector<std::string> interpolatedOf(const GaussianSequence& sequence,
+                                        const std::vector<FrameIndex>& frames);
 
 }  // namespace beam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/quality_history.h"
+#include "core/work/quality_history.h"
 
 #include <fmt/format.h>
 
@@ -146,15 +146,6 @@ std::vector<ScoreCurve> curvesOf(const QualityHistory& history) {
   list.reserve(curves.size());
   for (auto& [name, curve] : curves) list.push_back(std::move(curve));
   return list;
-}
-
-Better betterOf(const std::string& score) {
-  const auto holds = [&](const char* word) { return score.find(word) != std::string::npos; };
-  if (holds("psnr") || holds("ssim")) return Better::More;
-  for (const char* word : {"loss", "residual", "e_", "error", "chamfer", "angle", "_mm", "flicker"}) {
-    if (holds(word)) return Better::Less;
-  }
-  return Better::Neither;
 }
 
 std::vector<std::size_t> worstFrames(const QualityHistory& history, std::size_t count) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/contact_sheet.h"
+#include "core/work/contact_sheet.h"
 
 #include <algorithm>
 #include <cmath>

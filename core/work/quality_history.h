@@ -43,9 +43,6 @@ struct ScoreCurve {
   std::vector<std::pair<std::size_t, double>> points;  // index in history.frames, value
 };
 std::vector<ScoreCurve> curvesOf(const QualityHistory& history);
-// Whether more is better (psnr, ssim); nothing is said of counts.
-enum class Better { More, Less, Neither };
-Better betterOf(const std::string& score);
 // Frames by mean psnr of the training views, worst first; at most `count`. Frames without scores are left
 // out.
 std::vector<std::size_t> worstFrames(const QualityHistory& history, std::size_t count);

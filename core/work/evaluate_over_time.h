@@ -2,13 +2,12 @@
 // Scores frame by frame: pictures, and what happens between frames (drift, flicker).
 #pragma once
 
-#include <string>
 #include <vector>
 
-#include "app/cli/ground_truth.h"
 #include "core/render/device.h"
 #include "core/scene/capture.h"
 #include "core/scene/gaussian_sequence.h"
+#include "core/work/ground_truth.h"
 
 namespace beam {
 
@@ -25,12 +24,5 @@ void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& test
 
 // Means over frames of what scoreMotion found, as rows "drift" and "flicker"; nothing where it found nothing.
 ScoreTable motionTable(const PictureScores& each);
-
-// In the project's folder: what `beam evaluate` last found frame by frame, for the report.
-inline constexpr const char* kEvaluationFramesFile = "evaluation_frames.json";
-
-// The table, and "over_time": by frame its scores (means over its cameras) and its cameras' own; "worst" by
-// score.
-std::string scoreJson(const ScoreTable& table, const PictureScores& each);
 
 }  // namespace beam

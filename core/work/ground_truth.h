@@ -4,16 +4,13 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/work/scores.h"
 
 namespace beam {
-
-using Scores = std::map<std::string, double>;  // "psnr", "ssim", "psnr_mask", "angle_deg", "mae_mm", ...
-using ScoreTable = std::vector<std::pair<std::string, Scores>>;  // by map, in the evaluator's order
 
 struct GroundTruth {
   std::filesystem::path folder;  // the data set's; gt/ lies inside
@@ -23,15 +20,9 @@ struct GroundTruth {
 // Throws Error{Data} when the folder has no dataset.json or no gt/.
 GroundTruth openGroundTruth(const std::filesystem::path& folder);
 
-// By frame, then camera ("" for scores of the whole frame), then name: "rgb.psnr", "mesh.chamfer_mm".
-using PictureScores = std::map<std::string, std::map<std::string, Scores>>;
-
 // Scores what is in `pictures` (missing pictures are left out); throws Error{Data} when nothing can be
 // scored. `each` also gets every picture's own scores.
 ScoreTable scorePictures(const GroundTruth& truth, const std::filesystem::path& pictures, Progress& progress,
                          PictureScores& each);
-
-std::string scoreText(const ScoreTable& table);
-std::string scoreJson(const ScoreTable& table);
 
 }  // namespace beam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/selection.h"
+#include "core/work/selection.h"
 
 #include <fmt/format.h>
 
@@ -57,6 +57,15 @@ std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const Gaussi
                 fmt::format("\"{}\": no frame is solved yet: beam run it first", sequence.id()));
   }
   return solved;
+}
+
+std::vector<std::string> interpolatedOf(const GaussianSequence& sequence,
+                                        const std::vector<FrameIndex>& frames) {
+  std::vector<std::string> names;
+  for (const FrameIndex f : frames) {
+    if (sequence.content(f).interpolated) names.push_back(nameOf(sequence, f));
+  }
+  return names;
 }
 
 }  // namespace beam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/svg_chart.h"
+#include "core/work/svg_chart.h"
 
 #include <fmt/format.h>
 

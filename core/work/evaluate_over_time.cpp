@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/evaluate_over_time.h"
+#include "core/work/evaluate_over_time.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
-#include "app/cli/quality_history.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/ply_file.h"
@@ -19,7 +17,6 @@ namespace beam {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 std::optional<TrueSkin> readTracks(const fs::path& file, const Similarity3& world_from_capture) {
   if (!fs::exists(file)) return std::nullopt;
@@ -147,41 +144,6 @@ class MotionScorer {
   bool warned_ = false;  // of tracks that do not match
 };
 
-// Means over the cameras; scores of the whole frame as they are.
-Scores meanOfCameras(const std::map<std::string, Scores>& cameras) {
-  std::map<std::string, std::pair<double, double>> sums;
-  for (const auto& [camera, scores] : cameras) {
-    for (const auto& [name, value] : scores) sums[name].first += value, ++sums[name].second;
-  }
-  Scores mean;
-  for (const auto& [name, sum] : sums) mean[name] = sum.first / sum.second;
-  return mean;
-}
-
-Json worstOf(const PictureScores& each) {
-  struct Worst {
-    double value = 0;
-    std::string frame, camera;
-  };
-  std::map<std::string, Worst> worst;
-  for (const auto& [frame, cameras] : each) {
-    for (const auto& [camera, scores] : cameras) {
-      for (const auto& [name, value] : scores) {
-        const auto found = worst.find(name);
-        const bool more = betterOf(name) == Better::More;
-        if (found == worst.end() || (more ? value < found->second.value : value > found->second.value))
-          worst[name] = {value, frame, camera};
-      }
-    }
-  }
-  Json j = Json::object();
-  for (const auto& [name, w] : worst) {
-    j[name] = {{"value", w.value}, {"frame", w.frame}};
-    if (!w.camera.empty()) j[name]["camera"] = w.camera;
-  }
-  return j;
-}
-
 }  // namespace
 
 void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& test_views,
@@ -209,19 +171,6 @@ ScoreTable motionTable(const PictureScores& each) {
     if (!by_frame.empty()) table.emplace_back(row, meanOfCameras(by_frame));
   }
   return table;
-}
-
-std::string scoreJson(const ScoreTable& table, const PictureScores& each) {
-  Json j = Json::parse(scoreJson(table));
-  Json frames = Json::object();
-  for (const auto& [frame, cameras] : each) {
-    frames[frame]["scores"] = meanOfCameras(cameras);
-    for (const auto& [camera, scores] : cameras) {
-      if (!camera.empty()) frames[frame]["cameras"][camera] = scores;
-    }
-  }
-  j["over_time"] = {{"frames", std::move(frames)}, {"worst", worstOf(each)}};
-  return j.dump(1);
 }
 
 }  // namespace beam

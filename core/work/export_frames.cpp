@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/work/export_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/io/splat_ply.h"
+#include "core/scene/transform.h"
+#include "core/stages/project_sequence.h"
+#include "core/work/selection.h"
+
+namespace beam {
+namespace {
+
+void writeFrame(const GaussianFrame& frame, const Similarity3* frame_from_world,
+                const std::filesystem::path& file) {
+  const Materials* materials = frame.materials ? &*frame.materials : nullptr;
+  if (!frame_from_world) return writeSplatPly(file, frame.cloud, materials);
+  std::optional<Materials> turned;
+  if (materials) turned = transformed(*materials, *frame_from_world);
+  writeSplatPly(file, transformed(frame.cloud, *frame_from_world), turned ? &*turned : nullptr);
+}
+
+}  // namespace
+
+ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
+  const auto sequence = sequenceOf(request.project, Shows::Between);
+  const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence);
+  const Similarity3 capture_from_world = sequence->captureFromWorld();
+  std::filesystem::create_directories(request.out);
+  ExportOutcome outcome;
+  progress.expect(static_cast<std::int64_t>(frames.size()));
+  for (const FrameIndex frame : frames) {
+    const FrameLabel& label = sequence->frames()[static_cast<std::size_t>(frame.value)];
+    const std::shared_ptr<const GaussianFrame> r = sequence->load(frame);
+    if (!r)
+      throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", label.name));
+    outcome.files.push_back(request.out / fmt::format("frame.{:06}.ply", std::max(0LL, label.number)));
+    writeFrame(*r, request.world_frame ? nullptr : &capture_from_world, outcome.files.back());
+    progress.step();
+  }
+  outcome.interpolated = interpolatedOf(*sequence, frames);
+  return outcome;
+}
+
+}  // namespace beam

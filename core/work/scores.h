@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores of a project, by name: what an evaluation finds, keeps in the project and a report draws.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace beam {
+
+using Scores = std::map<std::string, double>;  // "psnr", "ssim", "psnr_mask", "angle_deg", "mae_mm", ...
+using ScoreTable = std::vector<std::pair<std::string, Scores>>;  // by map, in the evaluator's order
+// By frame, then camera ("" for scores of the whole frame), then name: "rgb.psnr", "mesh.chamfer_mm".
+using PictureScores = std::map<std::string, std::map<std::string, Scores>>;
+
+// In the project's folder: what its last evaluation found, as means and frame by frame.
+inline constexpr const char* kEvaluationFile = "evaluation.json";
+inline constexpr const char* kEvaluationFramesFile = "evaluation_frames.json";
+
+// Whether more is better (psnr, ssim); nothing is said of counts.
+enum class Better { More, Less, Neither };
+Better betterOf(const std::string& score);
+
+// Means over the cameras; scores of the whole frame as they are.
+Scores meanOfCameras(const std::map<std::string, Scores>& cameras);
+
+std::string scoreJson(const ScoreTable& table);
+// The table, and "over_time": by frame its scores (means over its cameras) and its cameras' own; "worst" by
+// score.
+std::string scoreJson(const ScoreTable& table, const PictureScores& each);
+
+}  // namespace beam
