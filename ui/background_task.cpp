@@ -13,45 +13,35 @@ constexpr int kTell_ms = 100;
 BackgroundTask::BackgroundTask(QObject* parent) : QObject(parent) {
   timer_.setInterval(kTell_ms);
   connect(&timer_, &QTimer::timeout, this, [this] {
-    if (const auto report = report_->latest()) Q_EMIT progressed(*report);
+    if (const auto report = task_->progress()) Q_EMIT progressed(*report);
   });
 }
 
 BackgroundTask::~BackgroundTask() = default;
 
-void BackgroundTask::start(Work work, std::function<void()> then) {
+void BackgroundTask::begin(Task<Continuation>::Work work) {
   if (busy_) throw Error(Error::Kind::Bug, "a background task was started while another one went on");
   busy_ = true;
-  then_ = std::move(then);
-  report_ = std::make_shared<Slot<ProgressReport>>();
   timer_.start();
-  thread_ = std::jthread([this, work = std::move(work), report = report_](const std::stop_token& stop) {
-    QString error;
-    bool complete = false;
-    try {
-      Progress progress(
-          stop, [report](const ProgressReport& r) { report->publish(std::make_shared<ProgressReport>(r)); });
-      work(progress);
-      complete = true;
-    } catch (const Cancelled&) {
-    } catch (const std::exception& e) {  // the border of this thread: said in the window
-      error = QString::fromStdString(e.what());
-    }
-    QMetaObject::invokeMethod(
-        this, [this, error, complete] { finish(error, complete); }, Qt::QueuedConnection);
-  });
+  task_.emplace(std::move(work),
+                [this] { QMetaObject::invokeMethod(this, &BackgroundTask::finish, Qt::QueuedConnection); });
 }
 
-void BackgroundTask::finish(const QString& error, bool complete) {
+void BackgroundTask::finish() {
   busy_ = false;
   timer_.stop();
-  const std::function<void()> then = std::exchange(then_, nullptr);
-  if (!complete) {
-    Q_EMIT failed(error);
+  Continuation then;
+  try {
+    then = task_->take();
+  } catch (const Cancelled&) {
+    Q_EMIT failed({});
+    return;
+  } catch (const std::exception& e) {  // the border of the task's thread: said in the window
+    Q_EMIT failed(QString::fromStdString(e.what()));
     return;
   }
   Q_EMIT done();
-  if (then) then();
+  then();
 }
 
 }  // namespace beam

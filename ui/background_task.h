@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// One long piece of work that is no run of the pipeline, on a thread of its own: a sample being made, a
-// project being copied. Progress and cancel like those of a run.
+// A Task as the window's thread sees it: a sample being made, a project being copied, scored, reported.
+// Progress and cancel like those of a run.
 #pragma once
 
 #include <QObject>
 #include <QTimer>
 
 #include <functional>
-#include <thread>
+#include <optional>
+#include <type_traits>
+#include <utility>
 
-#include "core/base/progress.h"
-#include "core/base/slot.h"
+#include "core/base/task.h"
 
 namespace beam {
 
@@ -18,16 +19,26 @@ class BackgroundTask final : public QObject {
   Q_OBJECT
 
  public:
-  // On the task's thread; may throw. To be cancelled is to throw Cancelled.
-  using Work = std::function<void(Progress&)>;
-
   explicit BackgroundTask(QObject* parent = nullptr);
   ~BackgroundTask() override;
 
-  // One at a time: throws Error{Bug} while one is going on. `then` is called on the window's thread when the
-  // work is done whole.
-  void start(Work work, std::function<void()> then);
-  void requestStop() { thread_.request_stop(); }
+  // One at a time: throws Error{Bug} while one is going on. `work` (Outcome(Progress&), Outcome may be void)
+  // is Task's; `then` (void(Outcome)) is called on the window's thread when the work is done whole.
+  template <class Work, class Then>
+  void start(Work work, Then then) {
+    using Outcome = std::invoke_result_t<Work&, Progress&>;
+    begin([work = std::move(work), then = std::move(then)](Progress& progress) -> Continuation {
+      if constexpr (std::is_void_v<Outcome>) {
+        work(progress);
+        return then;
+      } else {
+        return [then, outcome = work(progress)] { then(outcome); };
+      }
+    });
+  }
+  void requestStop() {
+    if (task_) task_->requestStop();
+  }
   bool busy() const { return busy_; }
 
  Q_SIGNALS:
@@ -36,13 +47,13 @@ class BackgroundTask final : public QObject {
   void failed(const QString& why);  // empty: cancelled
 
  private:
-  void finish(const QString& error, bool complete);
+  using Continuation = std::function<void()>;
+  void begin(Task<Continuation>::Work work);
+  void finish();
 
   bool busy_ = false;
-  std::function<void()> then_;
-  std::shared_ptr<Slot<ProgressReport>> report_;
   QTimer timer_;
-  std::jthread thread_;  // last: it stops first
+  std::optional<Task<Continuation>> task_;  // last: it stops first
 };
 
 }  // namespace beam

@@ -28,20 +28,21 @@ void CaptureWatch::start(const Project& project, const CaptureCheck& check) {
 
 void CaptureWatch::checkWhenFree() {
   if (!due_ || check_.busy()) return;
-  auto found = std::make_shared<QStringList>();
   const std::uint64_t ticket = ticket_;
   check_.start(
-      [found, check = std::exchange(due_, nullptr), project = *project_](Progress& progress) {
+      [check = std::exchange(due_, nullptr), project = *project_](Progress& progress) {
         ImportOptions options;
         options.up = project.document().up;
         options.hold_out = project.document().hold_out;
         options.placement = project.imported().placement;
+        QStringList found;
         for (const std::string& warning : check(project.captureFolder(), options, progress))
-          found->append(QString::fromStdString(warning));
-        found->removeDuplicates();
+          found.append(QString::fromStdString(warning));
+        found.removeDuplicates();
+        return found;
       },
-      [this, found, ticket] {
-        if (ticket == ticket_) Q_EMIT checked(*found);
+      [this, ticket](const QStringList& found) {
+        if (ticket == ticket_) Q_EMIT checked(found);
       });
 }
 

@@ -154,7 +154,14 @@ class MainWindow final : public QMainWindow {
   void openCapture();
   void openProject();
   void openSample();
-  void startTask(const QString& what, BackgroundTask::Work work, std::function<void()> then);
+  // `what` is made: "The sample". The rest is BackgroundTask's.
+  template <class Work, class Then>
+  void startTask(const QString& what, Work work, Then then) {
+    task_words_ = what;
+    task_.start(std::move(work), std::move(then));
+    showTaskStarted();
+  }
+  void showTaskStarted();
   void openLight();
   void chooseCaptureLight();
   bool takeOverSettings(const QString& what_waits);

@@ -67,10 +67,8 @@ void MainWindow::openProject() {
   if (!folder.isEmpty()) open(folder.toStdString());
 }
 
-void MainWindow::startTask(const QString& what, BackgroundTask::Work work, std::function<void()> then) {
-  task_words_ = what;
-  task_.start(std::move(work), std::move(then));
-  run_bar_->showStarted("Making " + what.toLower());
+void MainWindow::showTaskStarted() {
+  run_bar_->showStarted("Making " + task_words_.toLower());
   refreshCommands();
 }
 
