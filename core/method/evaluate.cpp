@@ -62,14 +62,19 @@ double triangleDistance(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
   return std::min({segmentDistance(p, a, b), segmentDistance(p, b, c), segmentDistance(p, c, a)});
 }
 
-double meanDistance_m(const std::vector<vec3>& points, const Mesh& mesh, std::uint64_t seed) {
+// Of no meaning when a stop is requested.
+double meanDistance_m(const std::vector<vec3>& points, const Mesh& mesh, std::uint64_t seed,
+                      const Progress& progress) {
+  if (progress.stopRequested()) return 0;
   const Samples dense = sampleSurface(mesh, kDense, seed);
+  if (progress.stopRequested()) return 0;
   const KdTree tree(dense.points);
   const int k = dense.triangle.empty() ? 1 : kCandidates;
   const double sum = parallelReduce(
       points.size(), 1024, 0.0,
       [&](std::size_t begin, std::size_t end) {
         double part = 0;
+        if (progress.stopRequested()) return part;
         for (std::size_t i = begin; i < end; ++i) {
           const std::vector<Neighbor> near = tree.nearest(points[i], k);
           double best = std::sqrt(static_cast<double>(near.front().squared_distance));
@@ -141,14 +146,14 @@ double depthErrorMm(const Planes& prediction, const Planes& truth, const Image<s
   return 1000 * sum / static_cast<double>(count);
 }
 
-Chamfer chamferDistance(const Mesh& prediction, const Mesh& truth) {
+Chamfer chamferDistance(const Mesh& prediction, const Mesh& truth, const Progress& progress) {
   if (prediction.vertices.empty() || truth.vertices.empty()) {
     throw Error(Error::Kind::Data, "a mesh without vertices has no distance");
   }
   const Samples p = sampleSurface(prediction, kScored, 1), t = sampleSurface(truth, kScored, 2);
   Chamfer c;
-  c.prediction_to_truth_mm = 1000 * meanDistance_m(p.points, truth, 3);
-  c.truth_to_prediction_mm = 1000 * meanDistance_m(t.points, prediction, 4);
+  c.prediction_to_truth_mm = 1000 * meanDistance_m(p.points, truth, 3, progress);
+  c.truth_to_prediction_mm = 1000 * meanDistance_m(t.points, prediction, 4, progress);
   c.chamfer_mm = (c.prediction_to_truth_mm + c.truth_to_prediction_mm) / 2;
   return c;
 }

@@ -30,7 +30,8 @@ double depthErrorMm(const Planes& prediction, const Planes& truth, const Image<s
 struct Chamfer {
   double chamfer_mm = 0, prediction_to_truth_mm = 0, truth_to_prediction_mm = 0;
 };
-// 100,000 area-uniform points each way, exact point-triangle distances; deterministic.
-Chamfer chamferDistance(const Mesh& prediction, const Mesh& truth);
+// 100,000 area-uniform points each way, exact point-triangle distances; deterministic. Of no meaning when a
+// stop is requested.
+Chamfer chamferDistance(const Mesh& prediction, const Mesh& truth, const Progress& progress = Progress());
 
 }  // namespace beam

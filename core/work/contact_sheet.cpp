@@ -93,6 +93,7 @@ std::vector<ContactRow> contactSheet(const GaussianSequence& sequence, const Cap
       const std::vector<TrainingView> crops = cropToMasks(views);
       const auto resident = residentOf(device, *result);
       for (std::size_t i = 0; i < crops.size(); ++i) {
+        progress.check();
         rows.push_back({nameOf(sequence, frame), views[i].name, chosen[i].second, {}});
         fill(crops[i], *resident, result->materials.has_value(), renderer, rows.back());
       }

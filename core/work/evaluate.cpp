@@ -44,10 +44,10 @@ class ScratchFolder {
 
 // Channels the solved frames can give and the truth can judge.
 RenderRequest picturesFor(const EvaluateRequest& request, const GaussianSequence& sequence,
-                          const GroundTruth& truth, const fs::path& out) {
+                          const GroundTruth& truth, const fs::path& out, const Progress& progress) {
   RenderRequest r;
   r.out = out;
-  r.frames = selectSolvedFrames(request.frames, sequence);
+  r.frames = selectSolvedFrames(request.frames, sequence, progress);
   for (const View& view : request.project.capture().views) {
     const auto& tests = truth.test_cameras;
     if (std::find(tests.begin(), tests.end(), view.name) != tests.end()) r.views.push_back(view);
@@ -58,6 +58,7 @@ RenderRequest picturesFor(const EvaluateRequest& request, const GaussianSequence
   }
   bool materials = true, meshes = true;
   for (const FrameIndex f : r.frames) {
+    progress.check();
     const FrameContent content = sequence.content(f);
     materials &= content.materials;
     meshes &= content.mesh;
@@ -82,7 +83,7 @@ EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, ComputeDevice&
   }
   const ScratchFolder scratch;
   const auto sequence = sequenceOf(request.project, Shows::Solved);
-  const RenderRequest pictures = picturesFor(request, *sequence, truth, scratch.path());
+  const RenderRequest pictures = picturesFor(request, *sequence, truth, scratch.path(), progress);
   {
     Progress part = progress.part(0.5, "render");
     renderChannels(*sequence, pictures, *newCpuSceneRenderer(device), part);
@@ -110,7 +111,7 @@ void addMean(const std::string& row, const std::vector<PictureScore>& scores, Sc
 EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, ComputeDevice& device, Progress& progress) {
   const CaptureSet& capture = request.project.capture();
   const auto sequence = sequenceOf(request.project, Shows::Solved);
-  const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence);
+  const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
   EvaluateOutcome e;
   std::vector<PictureScore> all;
   for (const FrameIndex frame : frames) {

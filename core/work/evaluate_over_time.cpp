@@ -53,8 +53,13 @@ struct Moment {
 class MotionScorer {
  public:
   MotionScorer(const GaussianSequence& sequence, const std::vector<View>& test_views,
-               const GroundTruth* truth, ComputeDevice& device, PictureScores& each)
-      : sequence_(sequence), truth_(truth), device_(device), renderer_(device), each_(each) {
+               const GroundTruth* truth, ComputeDevice& device, const Progress& progress, PictureScores& each)
+      : sequence_(sequence),
+        truth_(truth),
+        device_(device),
+        progress_(progress),
+        renderer_(device),
+        each_(each) {
     for (const View& view : test_views) cameras_.push_back(view.camera);
   }
 
@@ -63,7 +68,9 @@ class MotionScorer {
     if (!now) return before_.reset();
     const bool follows = before_ && before_->frame.value + 1 == index.value;
     const bool tracked = follows && isTracked(before_->result->cloud, now->result->cloud);
+    progress_.check();
     if (!tracked) startTake(*now);
+    progress_.check();
     if (follows && sameSkin(before_->skin, *now)) alongPoints(*now);
     if (tracked) alongGaussians(*now);
     before_ = std::move(now);
@@ -74,13 +81,16 @@ class MotionScorer {
     std::shared_ptr<const GaussianFrame> result = sequence_.load(index);
     if (!result) return std::nullopt;
     Moment m{index, std::move(result), std::nullopt, {}};
+    progress_.check();
     if (!truth_) return m;
     m.skin = readTracks(truth_->folder / "gt/tracks" / (name(index) + ".ply"),
                         inverse(sequence_.captureFromWorld()));
     if (!m.skin) return m;
     const auto resident = residentOf(device_, *m.result);
-    for (const Camera& camera : cameras_)
+    for (const Camera& camera : cameras_) {
+      progress_.check();
       m.views.push_back(seenPoints(renderer_.render(*resident, camera), camera, *m.skin));
+    }
     return m;
   }
 
@@ -134,6 +144,7 @@ class MotionScorer {
   const GaussianSequence& sequence_;
   const GroundTruth* truth_;
   ComputeDevice& device_;
+  const Progress& progress_;
   GBufferRenderer renderer_;
   PictureScores& each_;
   std::vector<Camera> cameras_;
@@ -150,7 +161,7 @@ void scoreMotion(const GaussianSequence& sequence, const std::vector<View>& test
                  const std::vector<FrameIndex>& frames, const GroundTruth* truth, ComputeDevice& device,
                  Progress& progress, PictureScores& each) {
   progress.expect(static_cast<std::int64_t>(frames.size()));
-  MotionScorer scorer(sequence, test_views, truth, device, each);
+  MotionScorer scorer(sequence, test_views, truth, device, progress, each);
   for (const FrameIndex frame : frames) {
     scorer.frame(frame);
     progress.step();

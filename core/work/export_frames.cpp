@@ -15,19 +15,21 @@ namespace beam {
 namespace {
 
 void writeFrame(const GaussianFrame& frame, const Similarity3* frame_from_world,
-                const std::filesystem::path& file) {
+                const std::filesystem::path& file, const Progress& progress) {
   const Materials* materials = frame.materials ? &*frame.materials : nullptr;
   if (!frame_from_world) return writeSplatPly(file, frame.cloud, materials);
+  const GaussianCloud cloud = transformed(frame.cloud, *frame_from_world);
   std::optional<Materials> turned;
   if (materials) turned = transformed(*materials, *frame_from_world);
-  writeSplatPly(file, transformed(frame.cloud, *frame_from_world), turned ? &*turned : nullptr);
+  progress.check();
+  writeSplatPly(file, cloud, turned ? &*turned : nullptr);
 }
 
 }  // namespace
 
 ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   const auto sequence = sequenceOf(request.project, Shows::Between);
-  const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence);
+  const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
   const Similarity3 capture_from_world = sequence->captureFromWorld();
   std::filesystem::create_directories(request.out);
   ExportOutcome outcome;
@@ -37,8 +39,9 @@ ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
     const std::shared_ptr<const GaussianFrame> r = sequence->load(frame);
     if (!r)
       throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", label.name));
+    progress.check();
     outcome.files.push_back(request.out / fmt::format("frame.{:06}.ply", std::max(0LL, label.number)));
-    writeFrame(*r, request.world_frame ? nullptr : &capture_from_world, outcome.files.back());
+    writeFrame(*r, request.world_frame ? nullptr : &capture_from_world, outcome.files.back(), progress);
     progress.step();
   }
   outcome.interpolated = interpolatedOf(*sequence, frames);

@@ -102,13 +102,14 @@ struct Triple {
 };
 
 std::vector<Triple> load(const GroundTruth& t, const fs::path& pictures, const std::string& what,
-                         Planes (*reader)(const fs::path&)) {
+                         Planes (*reader)(const fs::path&), const Progress& progress) {
   std::vector<Triple> out;
   for (const std::string& camera : t.test_cameras) {
     for (const std::string& frame : what == "rgb" ? t.frames : t.gt_frames) {
       const auto p = findPicture(pictures / what, camera, frame),
                  g = findPicture(t.folder / "gt" / what, camera, frame);
       if (!p || !g) continue;
+      progress.check();
       Triple triple{camera, frame, reader(*p), reader(*g),
                     readMask(t.folder / "gt/mask" / camera / (frame + ".png"))};
       if (triple.prediction.width != triple.truth.width || triple.prediction.height != triple.truth.height) {
@@ -124,12 +125,14 @@ std::vector<Triple> load(const GroundTruth& t, const fs::path& pictures, const s
 }
 
 template <class Prepare>
-Scores meanScores(const std::string& what, const std::vector<Triple>& triples, PictureScores& each,
-                  Prepare&& prepare) {
+Scores meanScores(const std::string& what, const std::vector<Triple>& triples, const Progress& progress,
+                  PictureScores& each, Prepare&& prepare) {
   Scores s;
   const auto n = static_cast<double>(triples.size());
   for (const Triple& t : triples) {
-    const PictureScore p = scorePicture(prepare(t.prediction, true), prepare(t.truth, false), t.mask);
+    const PictureScore p =
+        scorePicture(prepare(t.prediction, true), prepare(t.truth, false), t.mask, progress);
+    progress.check();
     s["psnr"] += p.psnr / n;
     s["ssim"] += p.ssim / n;
     s["psnr_mask"] += p.psnr_mask / n;
@@ -158,26 +161,29 @@ dvec3 channelScale(const std::vector<Triple>& triples) {
   return product / glm::max(square, dvec3(1e-12));
 }
 
-void scoreColors(const GroundTruth& t, const fs::path& pictures, const std::string& what, ScoreTable& out,
-                 PictureScores& each) {
-  const std::vector<Triple> triples = load(t, pictures, what, asLinear);
+void scoreColors(const GroundTruth& t, const fs::path& pictures, const std::string& what,
+                 const Progress& progress, ScoreTable& out, PictureScores& each) {
+  const std::vector<Triple> triples = load(t, pictures, what, asLinear, progress);
   if (triples.empty()) return;
-  out.emplace_back(what, meanScores(what, triples, each, [](const Planes& p, bool) { return encoded(p); }));
+  out.emplace_back(
+      what, meanScores(what, triples, progress, each, [](const Planes& p, bool) { return encoded(p); }));
   if (what == "rgb") return;
   const dvec3 scale = channelScale(triples);
-  out.emplace_back(what + "_scaled",
-                   meanScores(what + "_scaled", triples, each, [&](const Planes& p, bool prediction) {
-                     return encoded(p, prediction ? scale : dvec3(1));
-                   }));
+  out.emplace_back(what + "_scaled", meanScores(what + "_scaled", triples, progress, each,
+                                                [&](const Planes& p, bool prediction) {
+                                                  return encoded(p, prediction ? scale : dvec3(1));
+                                                }));
 }
 
-void scoreMeshes(const GroundTruth& t, const fs::path& pictures, ScoreTable& out, PictureScores& each) {
+void scoreMeshes(const GroundTruth& t, const fs::path& pictures, const Progress& progress, ScoreTable& out,
+                 PictureScores& each) {
   Scores sum;
   double n = 0;
   for (const std::string& frame : t.gt_frames) {
     const fs::path p = pictures / "mesh" / (frame + ".ply"), g = t.folder / "gt/mesh" / (frame + ".ply");
     if (!fs::exists(p) || !fs::exists(g)) continue;
-    const Chamfer c = chamferDistance(inMetres(readMeshPly(p), t), inMetres(readMeshPly(g), t));
+    const Chamfer c = chamferDistance(inMetres(readMeshPly(p), t), inMetres(readMeshPly(g), t), progress);
+    progress.check();
     sum["chamfer_mm"] += c.chamfer_mm;
     sum["pred_to_gt_mm"] += c.prediction_to_truth_mm;
     sum["gt_to_pred_mm"] += c.truth_to_prediction_mm;
@@ -231,15 +237,16 @@ ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progres
                          PictureScores& each) {
   ScoreTable out;
   progress.expect(static_cast<std::int64_t>(7 + t.environments.size()));
-  for (const char* what : {"rgb", "base_color"}) scoreColors(t, pictures, what, out, each), progress.step();
+  for (const char* what : {"rgb", "base_color"})
+    scoreColors(t, pictures, what, progress, out, each), progress.step();
   for (const char* what : {"ao", "roughness"}) {
-    const std::vector<Triple> triples = load(t, pictures, what, asValue);
+    const std::vector<Triple> triples = load(t, pictures, what, asValue, progress);
     if (!triples.empty())
-      out.emplace_back(what,
-                       meanScores(what, triples, each, [](const Planes& p, bool) { return clipped(p); }));
+      out.emplace_back(
+          what, meanScores(what, triples, progress, each, [](const Planes& p, bool) { return clipped(p); }));
     progress.step();
   }
-  if (const std::vector<Triple> triples = load(t, pictures, "normal", asNormal); !triples.empty()) {
+  if (const std::vector<Triple> triples = load(t, pictures, "normal", asNormal, progress); !triples.empty()) {
     Scores s{{"angle_deg", 0}, {"pictures", static_cast<double>(triples.size())}};
     for (const Triple& n : triples) {
       const double angle = normalErrorDeg(n.prediction, n.truth, n.mask);
@@ -249,7 +256,7 @@ ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progres
     out.emplace_back("normal", s);
   }
   progress.step();
-  if (const std::vector<Triple> triples = load(t, pictures, "depth", asValue); !triples.empty()) {
+  if (const std::vector<Triple> triples = load(t, pictures, "depth", asValue, progress); !triples.empty()) {
     Scores s{{"mae_mm", 0}, {"pictures", static_cast<double>(triples.size())}};
     for (const Triple& d : triples) {
       const double error = depthErrorMm(inMetres(d.prediction, t), inMetres(d.truth, t), d.mask);
@@ -260,8 +267,8 @@ ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progres
   }
   progress.step();
   for (const std::string& e : t.environments)
-    scoreColors(t, pictures, "relight_" + e, out, each), progress.step();
-  scoreMeshes(t, pictures, out, each);
+    scoreColors(t, pictures, "relight_" + e, progress, out, each), progress.step();
+  scoreMeshes(t, pictures, progress, out, each);
   progress.step();
   addRelightMean(out, false);
   addRelightMean(out, true);

@@ -17,7 +17,7 @@ namespace {
 
 class Collector {
  public:
-  explicit Collector(const Project& project) : project_(project) {
+  Collector(const Project& project, const Progress& progress) : project_(project), progress_(progress) {
     for (const std::string& w : project.imported().warnings) warn(w);
   }
 
@@ -32,12 +32,13 @@ class Collector {
       if (const auto record = project_.record(step, FrameIndex{})) count(*record);
     }
     for (std::size_t f = 0; f < project_.capture().frames.size(); ++f) {
+      progress_.check();
       FrameQuality q = frame(FrameIndex{static_cast<std::int32_t>(f)});
       if (!q.seconds.empty() || !q.failures.empty()) history_.frames.push_back(std::move(q));
     }
     const std::vector<ScoredFrame> frames = scored();
     history_.defects = findDefects(frames);
-    history_.left_out = leftOutCameras(project_);
+    history_.left_out = leftOutCameras(project_, progress_);
     history_.loss = lossOf(frames);
     return std::move(history_);
   }
@@ -111,6 +112,7 @@ class Collector {
   }
 
   const Project& project_;
+  const Progress& progress_;
   QualityHistory history_;
   std::vector<std::string> project_steps_, frame_steps_;
   std::set<std::string> told_;
@@ -118,11 +120,14 @@ class Collector {
 
 }  // namespace
 
-QualityHistory qualityHistory(const Project& project) { return Collector(project).collect(); }
+QualityHistory qualityHistory(const Project& project, const Progress& progress) {
+  return Collector(project, progress).collect();
+}
 
-std::vector<LeftOutCamera> leftOutCameras(const Project& project) {
+std::vector<LeftOutCamera> leftOutCameras(const Project& project, const Progress& progress) {
   std::vector<ScreenedFrame> frames;
   for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
+    progress.check();
     const auto index = static_cast<std::int32_t>(f);
     try {
       if (const auto folder = project.result(kScreenStep, FrameIndex{index}))

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/method/find_defects.h"
 #include "core/method/left_out.h"
 #include "core/pipeline/project.h"
@@ -32,10 +33,10 @@ struct QualityHistory {
   double peak_memory_bytes = 0;
 };
 
-QualityHistory qualityHistory(const Project& project);
+QualityHistory qualityHistory(const Project& project, const Progress& progress = Progress());
 // Cameras that the frames screened so far go without; a screening that cannot be read is left out with a
 // warning.
-std::vector<LeftOutCamera> leftOutCameras(const Project& project);
+std::vector<LeftOutCamera> leftOutCameras(const Project& project, const Progress& progress = Progress());
 
 // Scores of several frames, by name, in order of frames.
 struct ScoreCurve {

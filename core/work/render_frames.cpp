@@ -13,7 +13,7 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   RenderRequest pictures;
   pictures.channels = request.channels;
   pictures.views = selectViews(request.cameras, request.project.capture());
-  pictures.frames = selectSolvedFrames(request.frames, *sequence);
+  pictures.frames = selectSolvedFrames(request.frames, *sequence, progress);
   pictures.environments = request.environments;
   pictures.world_frame = request.world_frame;
   pictures.out = request.out;

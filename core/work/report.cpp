@@ -146,7 +146,7 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
   const auto sequence = sequenceOf(project, Shows::Solved);
   ReportPage page{
       project.name(), kProgramVersion, factsOf(project), {}, sequence->frames().size(), {}, {}, {}};
-  page.history = qualityHistory(project);
+  page.history = qualityHistory(project, progress);
   if (page.history.frames.empty()) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
                                                project.folder().string()));

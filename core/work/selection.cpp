@@ -45,10 +45,12 @@ std::vector<View> selectViews(const std::string& words, const CaptureSet& captur
   return chosen;
 }
 
-std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const GaussianSequence& sequence) {
+std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const GaussianSequence& sequence,
+                                           const Progress& progress) {
   if (list != "all") return parseFrameList(list, namesOf(sequence));
   std::vector<FrameIndex> solved;
   for (std::size_t f = 0; f < sequence.frames().size(); ++f) {
+    progress.check();
     const FrameIndex frame{static_cast<std::int32_t>(f)};
     if (sequence.content(frame).gaussians) solved.push_back(frame);
   }

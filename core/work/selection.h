@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/scene/capture.h"
 #include "core/scene/gaussian_sequence.h"
 
@@ -14,8 +15,10 @@ namespace beam {
 // choice.
 std::vector<View> selectViews(const std::string& words, const CaptureSet& capture);
 
-// "all": every frame with Gaussians; else a frame list. Throws Error{Data} when nothing is solved.
-std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const GaussianSequence& sequence);
+// "all": every frame with Gaussians; else a frame list. Throws Error{Data} when nothing is solved, Cancelled:
+// what there is of a frame may hang on pictures whose digests are not known yet.
+std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const GaussianSequence& sequence,
+                                           const Progress& progress);
 
 // Names of those of the frames that are interpolated.
 std::vector<std::string> interpolatedOf(const GaussianSequence& sequence,

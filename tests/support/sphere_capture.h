@@ -55,13 +55,18 @@ inline FrameView photographSphere(const SphereCapture& s, const Camera& camera, 
   return v;
 }
 
+// Where camera cam<i> stands, and what it is called.
+inline View viewOf(const SphereCapture& s, int i) {
+  const double z = 1 - (2 * i + 1.0) / s.cameras, r = std::sqrt(1 - z * z), phi = 2.39996323 * i;
+  const dvec3 position = dvec3(s.center) + 2.0 * dvec3(r * std::cos(phi), 0.8 * z, r * std::sin(phi));
+  return {"cam" + std::to_string(i), cameraLookingAt(position, s.center, s.size_px, 1.4 * s.size_px)};
+}
+
 inline std::vector<FrameView> photographs(const SphereCapture& s) {
   std::vector<FrameView> views;
   for (int i = 0; i < s.cameras; ++i) {
-    const double z = 1 - (2 * i + 1.0) / s.cameras, r = std::sqrt(1 - z * z), phi = 2.39996323 * i;
-    const dvec3 position = dvec3(s.center) + 2.0 * dvec3(r * std::cos(phi), 0.8 * z, r * std::sin(phi));
-    views.push_back(photographSphere(s, cameraLookingAt(position, s.center, s.size_px, 1.4 * s.size_px),
-                                     "cam" + std::to_string(i)));
+    View view = viewOf(s, i);
+    views.push_back(photographSphere(s, view.camera, std::move(view.name)));
   }
   return views;
 }
