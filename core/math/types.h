@@ -10,6 +10,7 @@
 
 namespace beam {
 
+using glm::dmat2;
 using glm::dmat3;
 using glm::dmat4;
 using glm::dquat;

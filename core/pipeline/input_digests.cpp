@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <istream>
 #include <locale>
 #include <span>
 #include <sstream>
@@ -38,6 +39,26 @@ std::string fileText(const InputDigests& digests, const std::filesystem::path& f
   }
 }
 
+// Word and all parameters; nothing of a pinhole, so that its text and the keys on it stay.
+std::string lensText(const Lens& lens) {
+  if (isPinhole(lens)) return "";
+  return fmt::format(" lens {} {}", lens.model, fmt::join(lens.parameters, " "));
+}
+
+// What lensText() wrote at the end of a line; fails the stream for anything else.
+Lens readLens(std::istream& lines) {
+  std::string rest, word;
+  std::getline(lines, rest);
+  std::istringstream words(rest);
+  words.imbue(std::locale::classic());
+  Lens lens;
+  if (!(words >> word)) return lens;
+  words >> lens.model;
+  for (double& parameter : lens.parameters) words >> parameter;
+  if (!words || word != "lens") lines.setstate(std::ios::failbit);
+  return lens;
+}
+
 }  // namespace
 
 std::string calibrationText(const CaptureSet& capture) {
@@ -46,10 +67,10 @@ std::string calibrationText(const CaptureSet& capture) {
     const Camera& c = view.camera;
     const dquat& q = c.camera_from_world.rotation;
     const dvec3& t = c.camera_from_world.translation_m;
-    text += fmt::format("view {}:{} {} {}x{} k {} {} {} {} q {} {} {} {} t {} {} {}\n", view.name.size(),
+    text += fmt::format("view {}:{} {} {}x{} k {} {} {} {} q {} {} {} {} t {} {} {}{}\n", view.name.size(),
                         view.name, view.split == Split::Train ? "train" : "test", c.width, c.height,
                         c.intrinsics.fx, c.intrinsics.fy, c.intrinsics.cx, c.intrinsics.cy, q.w, q.x, q.y,
-                        q.z, t.x, t.y, t.z);
+                        q.z, t.x, t.y, t.z, lensText(c.lens));
   }
   text += fmt::format("seed points {} {} {}\n", capture.seed_points.position_m.size(),
                       digestOfValues(capture.seed_points.position_m).hex(),
@@ -76,6 +97,7 @@ std::vector<View> viewsOfCalibration(const std::string& text) {
     dvec3& t = c.camera_from_world.translation_m;
     lines >> split >> c.width >> by >> c.height >> word >> c.intrinsics.fx >> c.intrinsics.fy >>
         c.intrinsics.cx >> c.intrinsics.cy >> word >> q.w >> q.x >> q.y >> q.z >> word >> t.x >> t.y >> t.z;
+    c.lens = readLens(lines);
     if (!lines || colon != ':' || by != 'x')
       throw Error(Error::Kind::Data, fmt::format("the cameras of the import cannot be understood: camera {} "
                                                  "is not whole",

@@ -15,7 +15,8 @@
 
 namespace beam {
 
-// Cameras, split and seed points as text: one line a view, numbers in shortest round-trip form.
+// Cameras, split and seed points as text: one line a view, numbers in shortest round-trip form. A lens is
+// told only where there is one.
 std::string calibrationText(const CaptureSet& capture);
 inline constexpr const char* kCamerasFile = "cameras.txt";  // of the capture's import: that text
 // Its cameras back. Throws Error{Data} for a line that it does not understand.

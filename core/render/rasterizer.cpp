@@ -22,10 +22,15 @@ Rasterizer::Rasterizer(const RasterDesc& desc) : desc_(desc) {
   require(!desc.gradients || desc.extra_channels <= 16, "expected at most 16 extra channels with gradients");
 }
 
-void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree,
-                         vec3 background, RasterImages& images) {
+void Rasterizer::requireFitting(const Camera& camera) const {
   require(camera.width == desc_.width && camera.height == desc_.height,
           "the camera has another picture size");
+  requirePinhole(camera, "rasteriser");
+}
+
+void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree,
+                         vec3 background, RasterImages& images) {
+  requireFitting(camera);
   require(gaussians.extra_channels == desc_.extra_channels,
           "the Gaussians have another number of extra channels");
   require(sh_degree >= 0 && sh_degree <= 3, "expected an SH degree of 0 to 3");
@@ -36,8 +41,7 @@ void Rasterizer::forward(const GaussianBuffers& gaussians, const Camera& camera,
 void Rasterizer::forward(const ResidentScene& scene, std::span<const std::string> extra, const Camera& camera,
                          vec3 background, RasterImages& images) {
   require(!desc_.gradients, "a resident scene has no gradients");
-  require(camera.width == desc_.width && camera.height == desc_.height,
-          "the camera has another picture size");
+  requireFitting(camera);
   int channels = 0;
   for (const std::string& name : extra) {
     require(scene.has(name), fmt::format("the scene has no attribute \"{}\"", name));
@@ -45,6 +49,11 @@ void Rasterizer::forward(const ResidentScene& scene, std::span<const std::string
   }
   require(channels == desc_.extra_channels, "the attributes have another number of channels");
   doForward(scene, extra, camera, background, images);
+}
+
+BlendWeights Rasterizer::blendWeights(const GaussianBuffers& gaussians, const Camera& camera) {
+  requireFitting(camera);
+  return doBlendWeights(gaussians, camera);
 }
 
 void Rasterizer::backward(const RasterImages& upstream, GaussianBuffers& gradients) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Differentiable, depth-sorted rasteriser of Gaussians (methods 1.3-1.9, 2.2-2.5). The base class checks
-// everything once; a backend only schedules. One object serves one picture size; forward must precede
-// backward.
+// everything once; a backend only schedules. One object serves one picture size and pinhole cameras; forward
+// must precede backward.
 #pragma once
 
 #include <cstdint>
@@ -83,13 +83,15 @@ class Rasterizer {
   virtual RasterCounts counts() const = 0;
 
   // Runs a forward pass of geometry only and lists every blend weight.
-  virtual BlendWeights blendWeights(const GaussianBuffers& gaussians, const Camera& camera) = 0;
+  BlendWeights blendWeights(const GaussianBuffers& gaussians, const Camera& camera);
 
  private:
+  void requireFitting(const Camera& camera) const;
   virtual void doForward(const GaussianBuffers& gaussians, const Camera& camera, int sh_degree,
                          vec3 background, RasterImages& images) = 0;
   virtual void doForward(const ResidentScene& scene, std::span<const std::string> extra, const Camera& camera,
                          vec3 background, RasterImages& images) = 0;
+  virtual BlendWeights doBlendWeights(const GaussianBuffers& gaussians, const Camera& camera) = 0;
   virtual void doBackward(const RasterImages& upstream, GaussianBuffers& gradients) = 0;
 
   RasterDesc desc_;

@@ -28,6 +28,7 @@ void validate(const Camera& camera, std::string_view name) {
     const double t = camera.camera_from_world.translation_m[i];
     if (!std::isfinite(t)) refuse("expected a finite translation", t);
   }
+  validate(camera.lens, name);
 }
 
 Camera scaledDown(const Camera& camera, int factor) {

@@ -23,8 +23,10 @@ enum class Split {
 
 struct View {
   std::string name;
-  Camera camera;
+  Camera camera;  // of the pictures as stored
   Split split = Split::Train;
+
+  bool operator==(const View&) const = default;
 };
 
 struct PointCloud {

@@ -15,7 +15,7 @@ inline constexpr std::uint8_t kInside = 128;  // a mask is inside from this valu
 
 struct FrameView {
   std::string name;
-  Camera camera;
+  Camera camera;             // a pinhole: of the picture as decoded
   Image<u8vec3> photo;       // sRGB
   Image<std::uint8_t> mask;  // 255 inside; empty: the capture has none
 };

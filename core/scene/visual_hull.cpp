@@ -48,6 +48,7 @@ void requireFew(std::size_t cells, double half, float cell_m) {
 
 VisualHull::VisualHull(std::span<const FrameView> views) {
   for (const FrameView& v : views) {
+    requirePinhole(v.camera, "visual hull");
     if (v.mask.empty()) continue;
     const Rigid3& pose = v.camera.camera_from_world;
     views_.push_back({glm::mat3_cast(pose.rotation), pose.translation_m, v.camera.intrinsics, v.mask.width,

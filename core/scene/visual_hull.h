@@ -15,7 +15,8 @@ namespace beam {
 
 class VisualHull {
  public:
-  // Views without masks say nothing. Masks count as inside from 128.
+  // Views without masks say nothing. Masks count as inside from 128. Throws Error{Bug} for a camera with a
+  // lens.
   explicit VisualHull(std::span<const FrameView> views);
 
   // How many views see the point inside their picture, and in how many of these it falls into the mask.

@@ -57,7 +57,7 @@ class CpuRasterizer final : public Rasterizer {
     return c;
   }
 
-  BlendWeights blendWeights(const GaussianBuffers& gaussians, const Camera& camera) override {
+  BlendWeights doBlendWeights(const GaussianBuffers& gaussians, const Camera& camera) override {
     prepare(gaussians, camera, 0);
     BlendWeights out;
     out.width = desc().width;

@@ -6,6 +6,7 @@
 
 #include "core/pipeline/take_survey.h"
 #include "tests/core/pipeline/fake_pipeline.h"
+#include "tests/support/message_of.h"
 
 namespace beam::testing {
 namespace {
@@ -16,14 +17,7 @@ using ::testing::HasSubstr;
 
 template <class Body>
 std::string dataErrorOf(Body&& body) {
-  try {
-    body();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), Error::Kind::Data) << e.what();
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
+  return messageOf(Error::Kind::Data, body);
 }
 
 // A solved project whose capture was moved to "elsewhere".
@@ -125,11 +119,29 @@ TEST(CalibrationText, GivesTheCamerasBack) {
   capture.views[1].name = "two words\nand lines";
   capture.views[1].split = Split::Test;
   capture.views[1].camera.camera_from_world.translation_m = {0.1, -2.0 / 3, 1e-17};
-  const std::vector<View> back = viewsOfCalibration(calibrationText(capture));
-  CaptureSet again = capture;
-  again.views = back;
-  EXPECT_EQ(calibrationText(again), calibrationText(capture));
+  EXPECT_EQ(viewsOfCalibration(calibrationText(capture)), capture.views);
   dataErrorOf([&] { viewsOfCalibration("view 3:lef"); });
+}
+
+// The digest is in the key of the import, and with it in all keys: a byte more and nothing is found again.
+TEST(CalibrationText, OfAPinholeIsWhatItAlwaysWas) {
+  CaptureSet capture;
+  capture.views = {{"left", {{50, 50.5, 32, 24}, 64, 48, {dquat(1, 0, 0, 0), {0.25, -1, 2}}}, Split::Train}};
+  EXPECT_EQ(calibrationText(capture),
+            "view 4:left train 64x48 k 50 50.5 32 24 q 1 0 0 0 t 0.25 -1 2\n"
+            "seed points 0 99aa06d3014798d86001c324468d497f 99aa06d3014798d86001c324468d497f\n");
+}
+
+TEST(CalibrationText, TellsALensWhereThereIsOne) {
+  CaptureSet capture;
+  capture.views = {{"left", {{50, 50, 32, 24}, 64, 48, {}}, Split::Train}};
+  capture.views[0].camera.lens = {"later", {0.5, -0.125}};
+  const std::string text = calibrationText(capture);
+  EXPECT_THAT(text, HasSubstr("t 0 0 0 lens later 0.5 -0.125 0 0 0 0 0 0 0 0 0 0\n"));
+  EXPECT_THAT(dataErrorOf([&] { viewsOfCalibration(calibrationText(capture)); }),
+              HasSubstr("found \"later\""));
+  dataErrorOf([&] { viewsOfCalibration("view 4:left train 64x48 k 50 50 32 24 q 1 0 0 0 t 0 0 0 lens\n"); });
+  dataErrorOf([&] { viewsOfCalibration("view 4:left train 64x48 k 50 50 32 24 q 1 0 0 0 t 0 0 0 more\n"); });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // for any thread count and instruction set.
 #include "core/render/rasterizer.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/base/rng.h"
 #include "core/render/device.h"
+#include "tests/support/message_of.h"
 #include "tests/support/reference_raster.h"
 
 namespace beam {
@@ -293,6 +295,18 @@ TEST(Rasterizer, BlendWeightsAddUpToTheCoverage) {
     for (std::uint32_t e = w.first[p]; e < w.first[p + 1]; ++e) sum += w.weight[e];
     EXPECT_NEAR(sum, images.alpha.values[p], 1e-5);
   }
+}
+
+TEST(Rasterizer, RefusesALens) {
+  Camera c = offCentreCamera(50, 40);
+  c.lens.model = "later";
+  const GaussianBuffers g = randomGaussians(3, 0.4f, 0.06f, 0, 9);
+  const auto device = makeCpuDevice();
+  const auto raster = device->newRasterizer({.width = c.width, .height = c.height});
+  RasterImages images;
+  const auto refusal = [](auto&& draw) { return testing::messageOf(Error::Kind::Bug, draw); };
+  EXPECT_THAT(refusal([&] { raster->forward(g, c, 3, vec3(0), images); }), ::testing::HasSubstr("\"later\""));
+  EXPECT_THAT(refusal([&] { raster->blendWeights(g, c); }), ::testing::HasSubstr("\"later\""));
 }
 
 TEST(Rasterizer, CountsAreThoseOfTheDrawnPairs) {
