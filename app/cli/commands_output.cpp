@@ -57,11 +57,8 @@ struct ExportFlags {
 };
 
 int runExport(const ExportFlags& flags, CommandContext& context) {
-  if (flags.format != "ply") {
-    throw Error(Error::Kind::Usage, fmt::format("--format expects ply, found \"{}\"", flags.format));
-  }
   const ExportRequest request{Project::open(flags.project, context.services.pipeline), flags.frames,
-                              wantsWorld(flags.frame_of), flags.out};
+                              wantsWorld(flags.frame_of), flags.out, flags.format};
   Progress progress(context.stop, context.console.listener());
   const ExportOutcome outcome = exportFrames(request, progress);
   context.console.endProgress();
@@ -71,6 +68,12 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
   return 0;
 }
 
+std::string formatHelp() {
+  std::vector<std::string> lines;
+  for (const ExportFormat& f : exportFormats()) lines.push_back(fmt::format("{}: {}", f.id, f.help));
+  return fmt::format("{}", fmt::join(lines, "; "));
+}
+
 }  // namespace
 
 void addRenderCommand(CLI::App& app, CommandContext& context) {
@@ -78,9 +81,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("render", "Write pictures of solved frames: colour, materials, geometry, relit");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command
-      ->add_option("--channels", flags->channels,
-                   fmt::format("Some of {}", fmt::join(channelIds(), ", ")))
+  command->add_option("--channels", flags->channels, fmt::format("Some of {}", fmt::join(channelIds(), ", ")))
       ->delimiter(',');
   command->add_option("--cameras", flags->cameras, "test, train, all or camera names");
   command->add_option("--frames", flags->frames,
@@ -97,7 +98,7 @@ void addExportCommand(CLI::App& app, CommandContext& context) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand("export", "Write solved frames for other programs");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command->add_option("--format", flags->format, "ply: one splat file a frame");
+  command->add_option("--format", flags->format, formatHelp());
   command->add_option("--out", flags->out, "Folder for the files")->required();
   command->add_option("--frames", flags->frames,
                       "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");

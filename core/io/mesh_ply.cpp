@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/io/file.h"
@@ -40,16 +41,46 @@ const PlyElement& vertexOf(const std::vector<PlyElement>& elements, const std::f
   throw Error(Error::Kind::Data, fmt::format("\"{}\": expected an element \"vertex\"", path.string()));
 }
 
+std::vector<vec3> normalsOf(const PlyElement& vertex) {
+  const auto x = vertex.column("nx"), y = vertex.column("ny"), z = vertex.column("nz");
+  if (!x || !y || !z) return {};
+  std::vector<vec3> out(vertex.count);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const float* row = vertex.row(i);
+    out[i] = {row[*x], row[*y], row[*z]};
+  }
+  return out;
+}
+
+std::vector<vec2> uvOf(const PlyElement& vertex) {
+  for (const auto& [s, t] : {std::pair{"s", "t"}, std::pair{"u", "v"}, std::pair{"texture_u", "texture_v"}}) {
+    const auto x = vertex.column(s), y = vertex.column(t);
+    if (!x || !y) continue;
+    std::vector<vec2> out(vertex.count);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {vertex.row(i)[*x], 1 - vertex.row(i)[*y]};
+    return out;
+  }
+  return {};
+}
+
 }  // namespace
 
 void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh) {
+  const bool normals = !mesh.vertices.empty() && mesh.normals.size() == mesh.vertices.size();
+  const bool uv = !mesh.vertices.empty() && mesh.uv.size() == mesh.vertices.size();
   std::string out = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
-      "float z\n"
+      "float z\n{}{}"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      mesh.vertices.size(), mesh.triangles.size());
-  out.reserve(out.size() + mesh.vertices.size() * 12 + mesh.triangles.size() * 13);
-  for (const vec3& v : mesh.vertices) append(out, v);
+      mesh.vertices.size(), normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+      uv ? "property float s\nproperty float t\n" : "", mesh.triangles.size());
+  const std::size_t row = 12 + (normals ? 12 : 0) + (uv ? 8 : 0);
+  out.reserve(out.size() + mesh.vertices.size() * row + mesh.triangles.size() * 13);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    append(out, mesh.vertices[i]);
+    if (normals) append(out, mesh.normals[i]);
+    if (uv) append(out, vec2(mesh.uv[i].x, 1 - mesh.uv[i].y));
+  }
   for (const auto& t : mesh.triangles) {
     append(out, std::uint8_t{3});
     append(out, t);
@@ -75,7 +106,10 @@ void writePointsPly(const std::filesystem::path& path, const PointCloud& points)
 Mesh readMeshPly(const std::filesystem::path& path) {
   const std::vector<PlyElement> elements = readPly(path);
   Mesh mesh;
-  mesh.vertices = positionsOf(vertexOf(elements, path), path);
+  const PlyElement& vertex = vertexOf(elements, path);
+  mesh.vertices = positionsOf(vertex, path);
+  mesh.normals = normalsOf(vertex);
+  mesh.uv = uvOf(vertex);
   const PlyElement* faces = findElement(elements, "face");
   if (!faces) return mesh;
   for (const std::vector<std::uint32_t>& polygon : faces->lists) {

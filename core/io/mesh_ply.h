@@ -11,11 +11,12 @@
 
 namespace beam {
 
+// Normals and texture positions as nx ny nz and s t, where every vertex has some.
 void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh);
 void writePointsPly(const std::filesystem::path& path, const PointCloud& points);
 
 // Polygons are fanned; a file without faces gives a mesh without triangles. Counts are checked against the
-// bytes.
+// bytes. Texture positions may also be called u v or texture_u texture_v; t points up in the file.
 Mesh readMeshPly(const std::filesystem::path& path);
 PointCloud readPointsPly(const std::filesystem::path& path);
 

@@ -95,8 +95,8 @@ float Figure::distance(vec3 x, std::span<const std::uint8_t> parts) const {
   return d;
 }
 
-SurfacePoint Figure::pointAt(vec3 x, std::span<const std::uint8_t> parts) const {
-  SurfacePoint best;
+FigurePoint Figure::pointAt(vec3 x, std::span<const std::uint8_t> parts) const {
+  FigurePoint best;
   float nearest = 1e9f;
   for (const std::uint8_t i : parts) {
     vec3 rest;
@@ -108,7 +108,7 @@ SurfacePoint Figure::pointAt(vec3 x, std::span<const std::uint8_t> parts) const 
   return best;
 }
 
-SurfacePoint Figure::pointAt(vec3 x) const { return pointAt(x, all_); }
+FigurePoint Figure::pointAt(vec3 x) const { return pointAt(x, all_); }
 
 std::vector<std::uint8_t> Figure::partsNear(vec3 x, float reach_m) const {
   // Along a step a distance changes by at most this factor: cones of unequal radii are steeper than 1.
@@ -233,12 +233,12 @@ Mesh Figure::mesh(float cell) const {
   return m;
 }
 
-Surface Figure::surface(float cell) const {
-  Surface s{mesh(cell), {}};
-  s.normals.resize(s.mesh.vertices.size());
+Mesh Figure::surface(float cell) const {
+  Mesh s = mesh(cell);
+  s.normals.resize(s.vertices.size());
   parallelFor(s.normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const vec3 v = s.mesh.vertices[i];
+      const vec3 v = s.vertices[i];
       s.normals[i] = normalAt(v, partsNear(v, kBlendReach_m));
     }
   });

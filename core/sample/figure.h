@@ -17,15 +17,9 @@ namespace beam {
 enum class Cloth { Skin, Hair, Shirt, Jeans, Shoe, Sole, Eye, Lip, Belt };
 
 // Where a surface point lies in the rest pose and what it is made of.
-struct SurfacePoint {
+struct FigurePoint {
   vec3 rest{0};
   Cloth cloth = Cloth::Skin;
-};
-
-// A mesh with the normals of its vertices.
-struct Surface {
-  Mesh mesh;
-  std::vector<vec3> normals;
 };
 
 class Figure {
@@ -34,16 +28,16 @@ class Figure {
 
   // Signed distance (negative inside), in metres; exact only near the surface.
   float distance(vec3 x) const;
-  SurfacePoint pointAt(vec3 x) const;
+  FigurePoint pointAt(vec3 x) const;
   // The same among some parts: those of partsNear() serve every point within its reach.
-  SurfacePoint pointAt(vec3 x, std::span<const std::uint8_t> parts) const;
+  FigurePoint pointAt(vec3 x, std::span<const std::uint8_t> parts) const;
   std::vector<std::uint8_t> partsNear(vec3 x, float reach_m) const;
   // To the nearest part of each bone.
   std::array<float, bone::Count> boneDistances(vec3 x) const;
   vec3 normalAt(vec3 x) const;
   // The surface as triangles of about `cell_m`.
   Mesh mesh(float cell_m) const;
-  Surface surface(float cell_m) const;
+  Mesh surface(float cell_m) const;  // with normals
 
  private:
   struct Part {

@@ -91,7 +91,7 @@ Environment lit(vec3 sky, vec3 horizon, vec3 floor, const std::vector<Lamp>& lam
 
 }  // namespace
 
-FigureLook lookOf(const SurfacePoint& p) {
+FigureLook lookOf(const FigurePoint& p) {
   const vec3 r = p.rest;
   switch (p.cloth) {
     case Cloth::Shirt:

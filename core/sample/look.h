@@ -13,7 +13,7 @@ struct FigureLook {
   vec3 base_color{0};  // linear
   float roughness = 0.5f;
 };
-FigureLook lookOf(const SurfacePoint& point);
+FigureLook lookOf(const FigurePoint& point);
 
 // Softboxes of different tint in a grey dome over a darker floor.
 Environment domeLight();

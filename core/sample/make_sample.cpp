@@ -115,13 +115,12 @@ class SampleWriter {
     SampleScene scene(skin.figure(), skin.first(), world_from_capture_);
     seedPoints(skin);
     for (int f = 0; f < options_.frames; ++f) {
-      const Surface surface =
-          f == 0 ? skin.first() : skin.posed(danceAt(f * kDanceFrames_s / kFramesPerSecond));
+      const Mesh surface = f == 0 ? skin.first() : skin.posed(danceAt(f * kDanceFrames_s / kFramesPerSecond));
       scene.pose(surface);
       if (moves()) tracks.write(in(fs::path("gt/tracks") / (frameName(f) + ".ply")), surface);
       photographs(scene, f, progress);
       if (std::count(description.truth_frames.begin(), description.truth_frames.end(), f) > 0)
-        truth(scene, surface.mesh, f, progress);
+        truth(scene, {surface.vertices, surface.triangles}, f, progress);
     }
     writeSampleDescriptions(folder_, description);
   }
@@ -213,7 +212,7 @@ class SampleWriter {
   // its errors.
   void seedPoints(const Skin& skin) const {
     PointCloud points;
-    const Mesh& mesh = skin.first().mesh;
+    const Mesh& mesh = skin.first();
     const RandomStream random(options_.seed, 0x5eedu);
     for (std::size_t i = 0; i < kSeedPoints; ++i) {
       const vec3 x = mesh.vertices[random.below(i, mesh.vertices.size())];

@@ -33,13 +33,13 @@ struct SampleScene::State final : PathSurfaces {
   std::vector<std::uint32_t> part_start;  // the figure's parts near each triangle
   std::vector<std::uint8_t> parts;
 
-  State(const Figure& f, const Surface& surface, const dmat3& turn)
+  State(const Figure& f, const Mesh& surface, const dmat3& turn)
       : figure(f),
         world_from_capture(turn),
-        first(surface.mesh.vertices),
+        first(surface.vertices),
         vertices(first.size()),
         normals(first.size()),
-        triangles(surface.mesh.triangles) {
+        triangles(surface.triangles) {
     findParts();
     device = rtcNewDevice("threads=1,isa=avx2");
     if (!device) throw Error(Error::Kind::Bug, "Embree did not start");
@@ -62,10 +62,10 @@ struct SampleScene::State final : PathSurfaces {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  void pose(const Surface& surface) {
+  void pose(const Mesh& surface) {
     auto* v = static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      vertices[i] = world_from_capture * surface.mesh.vertices[i];
+      vertices[i] = world_from_capture * surface.vertices[i];
       normals[i] = world_from_capture * surface.normals[i];
       v[3 * i] = vertices[i].x, v[3 * i + 1] = vertices[i].y, v[3 * i + 2] = vertices[i].z;
     }
@@ -184,11 +184,11 @@ struct SampleScene::State final : PathSurfaces {
   }
 };
 
-SampleScene::SampleScene(const Figure& figure, const Surface& surface, const dmat3& world_from_capture)
+SampleScene::SampleScene(const Figure& figure, const Mesh& surface, const dmat3& world_from_capture)
     : state_(std::make_unique<State>(figure, surface, world_from_capture)) {}
 SampleScene::~SampleScene() = default;
 
-void SampleScene::pose(const Surface& surface) { state_->pose(surface); }
+void SampleScene::pose(const Mesh& surface) { state_->pose(surface); }
 
 SampleScene::Picture SampleScene::photograph(const Camera& camera, const EnvironmentSampler& light,
                                              const TraceSettings& s, const Progress& progress) const {

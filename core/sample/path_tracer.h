@@ -28,13 +28,13 @@ struct TracedMaps {
 class SampleScene {
  public:
   // `surface` of the figure, in capture axes; `world_from_capture` turns it. Keeps a reference to the figure.
-  SampleScene(const Figure& figure, const Surface& surface, const dmat3& world_from_capture);
+  SampleScene(const Figure& figure, const Mesh& surface, const dmat3& world_from_capture);
   ~SampleScene();
   SampleScene(const SampleScene&) = delete;
   SampleScene& operator=(const SampleScene&) = delete;
 
   // Moves the vertices; the triangles stay.
-  void pose(const Surface& surface);
+  void pose(const Mesh& surface);
 
   // Linear radiance on black, and the coverage.
   struct Picture {

@@ -37,7 +37,7 @@ Skin::Skin(const BodyPose& first, float cell_m)
 
 void Skin::weigh() {
   influence_start_.push_back(0);
-  for (const vec3& x : first_.mesh.vertices) {
+  for (const vec3& x : first_.vertices) {
     const auto d = figure_.boneDistances(x);
     const float nearest = *std::min_element(d.begin(), d.end());
     float sum = 0;
@@ -54,7 +54,7 @@ void Skin::weigh() {
 
 // The derivative of a motion along the tangents is fitted to the edges around a vertex, least squares.
 void Skin::findTangents() {
-  const Mesh& m = first_.mesh;
+  const Mesh& m = first_;
   std::vector<std::vector<std::uint32_t>> ring(m.vertices.size());
   for (const auto& t : m.triangles) {
     for (int k = 0; k < 3; ++k) ring[t[k]].push_back(t[(k + 1) % 3]);
@@ -83,13 +83,13 @@ void Skin::findTangents() {
   }
 }
 
-void Skin::turnNormals(Surface& s, const std::vector<quat>& turns) const {
+void Skin::turnNormals(Mesh& s, const std::vector<quat>& turns) const {
   parallelFor(s.normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const vec3 turned = turns[i] * first_.normals[i];
       vec3 u = -bulge_[i].x * turned, v = -bulge_[i].y * turned;
       for (std::uint32_t k = edge_start_[i]; k < edge_start_[i + 1]; ++k) {
-        const vec3 e = s.mesh.vertices[edges_[k].to] - s.mesh.vertices[i];
+        const vec3 e = s.vertices[edges_[k].to] - s.vertices[i];
         u += edges_[k].share.x * e;
         v += edges_[k].share.y * e;
       }
@@ -101,9 +101,9 @@ void Skin::turnNormals(Surface& s, const std::vector<quat>& turns) const {
   });
 }
 
-Surface Skin::posed(const BodyPose& pose) const {
+Mesh Skin::posed(const BodyPose& pose) const {
   const auto motion = motionOf(bones_, placeBones(pose));
-  Surface s = first_;
+  Mesh s = first_;
   std::vector<quat> turns(s.normals.size());
   parallelFor(s.normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -118,7 +118,7 @@ Surface Skin::posed(const BodyPose& pose) const {
       const float length = glm::length(q.turn);
       turns[i] = q.turn / length;
       const quat t = 2.0f * ((q.shift / length) * glm::conjugate(turns[i]));
-      s.mesh.vertices[i] = turns[i] * first_.mesh.vertices[i] + vec3(t.x, t.y, t.z);
+      s.vertices[i] = turns[i] * first_.vertices[i] + vec3(t.x, t.y, t.z);
     }
   });
   turnNormals(s, turns);

@@ -13,8 +13,8 @@ class Skin {
   Skin(const BodyPose& first, float cell_m);
 
   const Figure& figure() const { return figure_; }  // in the first pose
-  const Surface& first() const { return first_; }
-  Surface posed(const BodyPose& pose) const;
+  const Mesh& first() const { return first_; }
+  Mesh posed(const BodyPose& pose) const;
 
  private:
   struct Influence {
@@ -27,11 +27,11 @@ class Skin {
   };
   void weigh();
   void findTangents();
-  void turnNormals(Surface& surface, const std::vector<quat>& turns) const;
+  void turnNormals(Mesh& surface, const std::vector<quat>& turns) const;
 
   PosedBones bones_;
   Figure figure_;
-  Surface first_;
+  Mesh first_;
   std::vector<std::uint32_t> influence_start_, edge_start_;
   std::vector<Influence> influences_;
   std::vector<Edge> edges_;

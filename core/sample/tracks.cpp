@@ -11,10 +11,10 @@
 
 namespace beam {
 
-TrackPoints::TrackPoints(const Surface& first, std::size_t count, int seed) {
+TrackPoints::TrackPoints(const Mesh& first, std::size_t count, int seed) {
   std::vector<double> area(1, 0.0);  // running sum
-  for (const auto& t : first.mesh.triangles) {
-    const vec3 a = first.mesh.vertices[t[0]], b = first.mesh.vertices[t[1]], c = first.mesh.vertices[t[2]];
+  for (const auto& t : first.triangles) {
+    const vec3 a = first.vertices[t[0]], b = first.vertices[t[1]], c = first.vertices[t[2]];
     area.push_back(area.back() + 0.5 * glm::length(glm::cross(b - a, c - a)));
   }
   const RandomStream random(seed, 0x72ac5u);
@@ -28,21 +28,21 @@ TrackPoints::TrackPoints(const Surface& first, std::size_t count, int seed) {
   }
 }
 
-std::vector<TrackPoints::Point> TrackPoints::on(const Surface& s) const {
+std::vector<TrackPoints::Point> TrackPoints::on(const Mesh& s) const {
   std::vector<Point> out;
   out.reserve(places_.size());
   for (const Place& p : places_) {
-    const auto& t = s.mesh.triangles[p.triangle];
+    const auto& t = s.triangles[p.triangle];
     const auto mix = [&](const std::vector<vec3>& of) {
       return (1 - p.barycentric.x - p.barycentric.y) * of[t[0]] + p.barycentric.x * of[t[1]] +
              p.barycentric.y * of[t[2]];
     };
-    out.push_back({mix(s.mesh.vertices), glm::normalize(mix(s.normals))});
+    out.push_back({mix(s.vertices), glm::normalize(mix(s.normals))});
   }
   return out;
 }
 
-void TrackPoints::write(const std::filesystem::path& path, const Surface& surface) const {
+void TrackPoints::write(const std::filesystem::path& path, const Mesh& surface) const {
   const std::vector<Point> points = on(surface);
   std::string bytes = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", points.size());
   for (const char* column : {"x", "y", "z", "nx", "ny", "nz"})

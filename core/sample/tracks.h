@@ -11,15 +11,15 @@ namespace beam {
 class TrackPoints {
  public:
   // Uniform over the area of `first`.
-  TrackPoints(const Surface& first, std::size_t count, int seed);
+  TrackPoints(const Mesh& first, std::size_t count, int seed);
 
   struct Point {
     vec3 position_m, normal;
   };
   // In the same order for every pose of the mesh.
-  std::vector<Point> on(const Surface& surface) const;
+  std::vector<Point> on(const Mesh& surface) const;
   // Binary PLY, columns x y z nx ny nz.
-  void write(const std::filesystem::path& path, const Surface& surface) const;
+  void write(const std::filesystem::path& path, const Mesh& surface) const;
 
  private:
   struct Place {

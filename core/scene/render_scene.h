@@ -35,9 +35,9 @@ struct RenderInstance {
 // A frame where it was captured. `frame` is not null and stays alive with the instance.
 RenderInstance instanceOf(const std::shared_ptr<const GaussianFrame>& frame, RenderMode mode = {});
 
-// What a mesh has instead of one colour. An empty picture: the colour or roughness of its RenderMesh.
+// What a mesh has instead of one colour, by its uv. An empty picture: the colour or roughness of its
+// RenderMesh.
 struct MeshTextures {
-  std::vector<vec2> uv;    // of each vertex; (0, 0) is the upper left corner of a picture
   Image<vec3> base_color;  // scene-linear Rec.709
   Image<float> roughness;
 };

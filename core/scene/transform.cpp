@@ -68,6 +68,7 @@ Mesh transformed(const Mesh& mesh, const Similarity3& a_from_b) {
   requireSimilarity(a_from_b);
   Mesh out = mesh;
   for (vec3& v : out.vertices) v = vec3(a_from_b * dvec3(v));
+  for (vec3& n : out.normals) n = vec3(a_from_b.rotation * dvec3(n));
   return out;
 }
 

@@ -137,6 +137,23 @@ TEST(MeshPly, MeshesAndPointsComeBack) {
   EXPECT_EQ(readPointsPly(dir / "p.ply").color, p.color);
 }
 
+TEST(MeshPly, NormalsAndTexturePositionsComeBackWhereThereAreSome) {
+  const TempDir dir;
+  Mesh m;
+  m.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  m.triangles = {{0, 1, 2}};
+  writeMeshPly(dir / "bare.ply", m);
+  EXPECT_EQ(bytesOf(dir / "bare.ply").find("nx"), std::string::npos);
+  EXPECT_TRUE(readMeshPly(dir / "bare.ply").normals.empty());
+  m.normals.assign(3, vec3(0, 0, 1));
+  m.uv = {{0, 0}, {1, 0.25f}, {0.5f, 1}};
+  writeMeshPly(dir / "full.ply", m);
+  const Mesh back = readMeshPly(dir / "full.ply");
+  EXPECT_EQ(back.vertices, m.vertices);
+  EXPECT_EQ(back.normals, m.normals);
+  EXPECT_EQ(back.uv, m.uv);
+}
+
 TEST(MeshPly, AsciiPolygonsAreFannedAndAbsurdCountsRefused) {
   const TempDir dir;
   put(dir / "a.ply",

@@ -92,15 +92,15 @@ struct Meeting {
 
 Meeting deepest(double frame) {
   const Skin& skin = coarseSkin();
-  const Surface s = skin.posed(danceAt(frame));
+  const Mesh s = skin.posed(danceAt(frame));
   const Figure figure(danceAt(frame));
   Meeting m;
-  for (std::size_t i = 0; i < s.mesh.vertices.size(); ++i) {
-    const auto at_first = skin.figure().boneDistances(skin.first().mesh.vertices[i]);
+  for (std::size_t i = 0; i < s.vertices.size(); ++i) {
+    const auto at_first = skin.figure().boneDistances(skin.first().vertices[i]);
     const int own = static_cast<int>(std::min_element(at_first.begin(), at_first.end()) - at_first.begin());
     const bool left = isForearm(own, false), right = isForearm(own, true);
     if (!left && !right) continue;
-    const auto d = figure.boneDistances(s.mesh.vertices[i]);
+    const auto d = figure.boneDistances(s.vertices[i]);
     for (int b = 0; b < bone::Count; ++b) {
       const bool own_arm = isForearm(b, right) || b == (right ? bone::RUpper : bone::LUpper);
       if (own_arm || d[b] >= m.deepest) continue;
@@ -123,28 +123,28 @@ TEST(SampleMotion, ArmsComeCloseAndDoNotPassThroughTheBody) {
 
 TEST(SampleMotion, FeetStayOnTheGround) {
   for (int f = 0; f < 60; ++f) {
-    const Surface s = coarseSkin().posed(danceAt(f));
+    const Mesh s = coarseSkin().posed(danceAt(f));
     float lowest = 1;
-    for (const vec3& v : s.mesh.vertices) lowest = std::min(lowest, v.z);
+    for (const vec3& v : s.vertices) lowest = std::min(lowest, v.z);
     EXPECT_NEAR(lowest, 0.0f, 0.02f) << f;
   }
 }
 
 TEST(SampleSkin, TheFirstPoseIsTheFigureItself) {
   const Skin& skin = coarseSkin();
-  const Surface s = skin.posed(danceAt(0));
+  const Mesh s = skin.posed(danceAt(0));
   for (std::size_t i = 0; i < s.normals.size(); ++i) {
-    ASSERT_LT(glm::length(s.mesh.vertices[i] - skin.first().mesh.vertices[i]), 1e-5f);
+    ASSERT_LT(glm::length(s.vertices[i] - skin.first().vertices[i]), 1e-5f);
     ASSERT_GT(glm::dot(s.normals[i], skin.first().normals[i]), 0.9999f);
   }
 }
 
 TEST(SampleSkin, StaysNearThePosedFigure) {
-  const Surface s = coarseSkin().posed(danceAt(13));
+  const Mesh s = coarseSkin().posed(danceAt(13));
   const Figure figure(danceAt(13));
   double sum = 0;
-  for (const vec3& v : s.mesh.vertices) sum += std::abs(figure.distance(v));
-  EXPECT_LT(sum / static_cast<double>(s.mesh.vertices.size()), 0.004);
+  for (const vec3& v : s.vertices) sum += std::abs(figure.distance(v));
+  EXPECT_LT(sum / static_cast<double>(s.vertices.size()), 0.004);
 }
 
 float distanceTo(vec3 x, vec3 a, vec3 b, vec3 c) {
@@ -167,7 +167,7 @@ TEST(SampleTracks, LieOnTheMeshOfEachFrameWithItsNormals) {
   const Skin& skin = coarseSkin();
   const TrackPoints tracks(skin.first(), 400, 1);
   for (const double frame : {0.0, 12.0, 20.0}) {
-    const Surface s = skin.posed(danceAt(frame));
+    const Mesh s = skin.posed(danceAt(frame));
     tracks.write(dir / "t.ply", s);
     const std::vector<PlyElement> file = readPly(dir / "t.ply");
     const PlyElement& points = file.at(0);
@@ -179,8 +179,8 @@ TEST(SampleTracks, LieOnTheMeshOfEachFrameWithItsNormals) {
       const vec3 x(row[0], row[1], row[2]), n(row[3], row[4], row[5]);
       float least = 1;
       vec3 normal(0);
-      for (const auto& t : s.mesh.triangles) {
-        const vec3 a = s.mesh.vertices[t[0]], b = s.mesh.vertices[t[1]], c = s.mesh.vertices[t[2]];
+      for (const auto& t : s.triangles) {
+        const vec3 a = s.vertices[t[0]], b = s.vertices[t[1]], c = s.vertices[t[2]];
         if (glm::length(a - x) > 0.06f) continue;
         const float d = distanceTo(x, a, b, c);
         if (d < least) least = d, normal = glm::normalize(glm::cross(b - a, c - a));
@@ -200,8 +200,8 @@ TEST(SampleTracks, AreEvenOverTheSurfaceAndMoveAsFastAsLimbsDo) {
   double head = 0;
   for (const auto& p : first) head += p.position_m.z > 1.5f;
   double area = 0, head_area = 0;
-  for (const auto& t : skin.first().mesh.triangles) {
-    const auto& v = skin.first().mesh.vertices;
+  for (const auto& t : skin.first().triangles) {
+    const auto& v = skin.first().vertices;
     const double a = glm::length(glm::cross(v[t[1]] - v[t[0]], v[t[2]] - v[t[0]]));
     area += a;
     if ((v[t[0]].z + v[t[1]].z + v[t[2]].z) / 3 > 1.5f) head_area += a;

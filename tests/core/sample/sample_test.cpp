@@ -128,10 +128,10 @@ TEST(SampleDefects, OutOfFocusKeepsLightAndSpreadsIt) {
 
 TEST(SamplePathTracer, TheTopOfTheHeadSeesTheWholeUpperSky) {
   const Figure figure(portraitPose());
-  const Surface surface = figure.surface(0.012f);
+  const Mesh surface = figure.surface(0.012f);
   const SampleScene scene(figure, surface, dmat3(1.0));
   vec3 top(0);
-  for (const vec3& v : surface.mesh.vertices) {
+  for (const vec3& v : surface.vertices) {
     if (v.z > top.z) top = v;
   }
   EXPECT_GT(scene.skyVisibility(top, vec3(0, 0, 1), 256, 1), 0.99f);
@@ -139,7 +139,7 @@ TEST(SamplePathTracer, TheTopOfTheHeadSeesTheWholeUpperSky) {
 
 TEST(SamplePathTracer, AWhiteFurnaceGivesNoEnergyAway) {
   const Figure figure(portraitPose());
-  const Surface surface = figure.surface(0.02f);
+  const Mesh surface = figure.surface(0.02f);
   const SampleScene scene(figure, surface, dmat3(1.0));
   const EnvironmentSampler white(makeEnvironment(Image<vec3>(16, 8, vec3(1))));
   Camera c;

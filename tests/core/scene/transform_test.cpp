@@ -171,6 +171,18 @@ TEST(Transformed, ATurnedCaptureGoesBackBitForBit) {
   }
 }
 
+TEST(Transformed, NormalsOfAMeshTurnAndStayUnit) {
+  Mesh mesh;
+  mesh.vertices.emplace_back(1, 2, 3);
+  mesh.normals.emplace_back(0, 1, 0);
+  mesh.uv.emplace_back(0.25f, 0.75f);
+  const Similarity3 a_from_b{worldFromCapture(UpAxis::PlusZ), 1000, dvec3(5, 6, 7)};
+  const Mesh turned = transformed(mesh, a_from_b);
+  EXPECT_EQ(turned.normals[0], vec3(a_from_b.rotation * dvec3(mesh.normals[0])));
+  EXPECT_EQ(turned.vertices[0], vec3(a_from_b * dvec3(mesh.vertices[0])));
+  EXPECT_EQ(turned.uv, mesh.uv);
+}
+
 TEST(Transformed, RefusesMirrorsAndScalesThatAreNoSizes) {
   EXPECT_THROW(transformed(someCloud(), {dmat3(-1.0)}), Error);
   EXPECT_THROW(transformed(someCloud(), {dmat3(1.0), 0}), Error);
