@@ -78,6 +78,16 @@ QString withSuffix(const QString& file, const QString& suffix) {
   return file.isEmpty() || file.endsWith(suffix, Qt::CaseInsensitive) ? file : file + suffix;
 }
 
+QString askFileToWrite(QWidget* parent, const QString& title, const QString& start, const QString& kind,
+                       const QString& suffix) {
+  QFileDialog dialog(parent, title, QFileInfo(start).absolutePath(), QString("%1 (*.%2)").arg(kind, suffix));
+  dialog.setAcceptMode(QFileDialog::AcceptSave);
+  dialog.setDefaultSuffix(suffix);
+  dialog.selectFile(QFileInfo(start).fileName());
+  if (dialog.exec() != QDialog::Accepted || dialog.selectedFiles().isEmpty()) return {};
+  return withSuffix(dialog.selectedFiles().front(), "." + suffix);
+}
+
 }  // namespace
 
 FolderKind folderKind(const QString& folder) {
@@ -122,14 +132,13 @@ QString askPanorama(QWidget* parent, SessionMemory& memory, const QString& title
 
 QString askPictureFile(QWidget* parent, SessionMemory& memory, const QString& proposed) {
   const QString start = QDir(memory.folderFor("picture")).filePath(proposed);
-  QFileDialog dialog(parent, "Save the view as a picture", QFileInfo(start).absolutePath(), "PNG (*.png)");
-  dialog.setAcceptMode(QFileDialog::AcceptSave);
-  dialog.setDefaultSuffix("png");
-  dialog.selectFile(QFileInfo(start).fileName());
-  if (dialog.exec() != QDialog::Accepted || dialog.selectedFiles().isEmpty()) return {};
-  const QString file = withSuffix(dialog.selectedFiles().front(), ".png");
-  memory.keepFolder("picture", QFileInfo(file).absolutePath());
+  const QString file = askFileToWrite(parent, "Save the view as a picture", start, "PNG", "png");
+  if (!file.isEmpty()) memory.keepFolder("picture", QFileInfo(file).absolutePath());
   return file;
+}
+
+QString askReportFile(QWidget* parent, const QString& proposed) {
+  return askFileToWrite(parent, "Where the report is to be written", proposed, "Pages", "html");
 }
 
 }  // namespace beam

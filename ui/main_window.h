@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The studio's window: rail and run bar on top, views in the middle, project, inspector and log in docks. It
 // wires the parts to each other; each part knows its own subject. Its own code by subject: main_window.cpp
-// lays out, _commands what can be done and when, _files opening, saving and closing, _run what runs, _wiring
-// who hears whom.
+// lays out, _commands what can be done and when, _files opening, saving and closing, _run what runs, _work
+// what is made of solved frames, _wiring who hears whom.
 #pragma once
 
 #include <QMainWindow>
@@ -132,6 +132,7 @@ class MainWindow final : public QMainWindow {
   void makeCommands();
   void addFileCommands();
   void addProcessCommands();
+  void addWorkCommands();
   void addViewCommands();
   void addCameraCommands();
   void addLookCommands();
@@ -142,6 +143,9 @@ class MainWindow final : public QMainWindow {
   QString refusalToOpen() const;
   QString refusalToSample() const;
   QString refusalToRun() const;
+  QString refusalToWork() const;
+  QString refusalToEvaluate() const;
+  QString refusalToReport() const;
   QString refusalWithoutProject() const;
   QString refusalToStop() const;
   QString refusalToMoveCamera() const;
@@ -194,6 +198,10 @@ class MainWindow final : public QMainWindow {
   void takePreview(const JobPreview& preview);
   bool previewWins() const;
 
+  // --- Work on solved frames ---
+  void evaluateHeldOut();
+  void writeReport();
+
   // --- Who hears whom ---
   void connectModel();
   void connectViews();
@@ -229,7 +237,7 @@ class MainWindow final : public QMainWindow {
   LightLibrary lights_;
   JobBridge job_;
   QString task_words_;   // what the task makes: "The sample"
-  BackgroundTask task_;  // a sample being made, a copy being written
+  BackgroundTask task_;  // a sample being made, a copy or a report being written, frames being scored
   Player player_;
   JointSource joints_;
   CommandTable commands_;
@@ -243,6 +251,7 @@ class MainWindow final : public QMainWindow {
   std::filesystem::path
       broken_;                // a project that could not be read; empty: none, or another was opened since
   bool quick_first_ = false;  // the project that is being opened begins with the quick preset
+  bool held_out_ = false;     // the capture has photographs to score against
   bool stopping_ = false;     // the run was told to stop now
   bool full_size_play_ = false, asks_before_closing_ = true, was_maximized_ = false;
   int scout_every_ = kScoutEvery;  // last chosen

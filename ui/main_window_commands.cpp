@@ -6,6 +6,10 @@
 #include <QMessageBox>
 #include <QTabBar>
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/stages/project_sequence.h"
 #include "ui/elided_label.h"
 #include "ui/image_page.h"
 #include "ui/main_window.h"
@@ -42,6 +46,17 @@ const char* const kKeys =
 const char* const kWhatItIs =
     "Turns multi-view photographs of a person in a lit dome into Gaussians that can be relit.";
 
+// Of the settings in force, in any frame.
+bool hasResults(const TakeSurvey& survey) {
+  const auto known = [](double v) { return !std::isnan(v); };
+  const auto has = [&](const SurveyCurve& c) { return std::any_of(c.values.begin(), c.values.end(), known); };
+  const auto failed = [](const SurveyLane& l) {
+    return std::find(l.cells.begin(), l.cells.end(), CellState::Failed) != l.cells.end();
+  };
+  return std::any_of(survey.curves.begin(), survey.curves.end(), has) ||
+         std::any_of(survey.lanes.begin(), survey.lanes.end(), failed);
+}
+
 // One that is not on disk yet can be written, wherever it is to lie.
 bool cannotBeWritten(const Project& project) {
   return Project::isProject(project.folder()) && project.readOnly();
@@ -75,6 +90,27 @@ QString MainWindow::refusalToRun() const {
   return {};
 }
 
+QString MainWindow::refusalToWork() const {
+  if (const QString why = refusalToOpen(); !why.isEmpty()) return why;
+  if (const QString why = refusalWithoutProject(); !why.isEmpty()) return why;
+  if (model_.captureLost()) return "The capture is not where it was: locate it first.";
+  return model_.survey() ? QString() : "The project is still being looked through.";
+}
+
+QString MainWindow::refusalToEvaluate() const {
+  if (const QString why = refusalToWork(); !why.isEmpty()) return why;
+  if (!held_out_)
+    return "No camera with photographs is held out: make the project with beam new --hold-out to keep some.";
+  if (!anySolved(*model_.survey())) return "No frame is solved yet: run one first.";
+  if (cannotBeWritten(model_.project())) return "The project is read-only: its scores could not be kept.";
+  return {};
+}
+
+QString MainWindow::refusalToReport() const {
+  if (const QString why = refusalToWork(); !why.isEmpty()) return why;
+  return hasResults(*model_.survey()) ? QString() : "No frame has a result yet: run one first.";
+}
+
 QString MainWindow::refusalToStop() const {
   if (stopping_) return "The run is stopping.";
   return job_.busy() || task_.busy() ? QString() : "Nothing is running.";
@@ -95,6 +131,7 @@ QString MainWindow::refusalToSavePicture() const {
 void MainWindow::makeCommands() {
   addFileCommands();
   addProcessCommands();
+  addWorkCommands();
   addViewCommands();
   commands_.add("keys", {"Keys", "Keys and mouse of the views", QKeySequence("F1"),
                          [this] { QMessageBox::information(this, "Keys", kKeys); }});
@@ -233,6 +270,21 @@ void MainWindow::addProcessCommands() {
              "The frame at work is finished and kept, then the run ends", StopAfter::Frame);
   commands_.add("cancel", {"Cancel", "Stop now; finished steps are kept", QKeySequence("Ctrl+."),
                            [this] { cancelRun(); }, [this] { return refusalToStop(); }});
+}
+
+void MainWindow::addWorkCommands() {
+  commands_.add("evaluate", {"Evaluate",
+                             "Score the solved frames by the photographs of held-out cameras, which no fit "
+                             "has seen; the scores stand in the panel Project",
+                             {},
+                             [this] { evaluateHeldOut(); },
+                             [this] { return refusalToEvaluate(); }});
+  commands_.add("report", {"Report…",
+                           "Write the quality of all frames as one page: curves, cameras, worst frames, "
+                           "pictures",
+                           {},
+                           [this] { writeReport(); },
+                           [this] { return refusalToReport(); }});
 }
 
 void MainWindow::addViewCommands() {
@@ -389,8 +441,8 @@ void MainWindow::makeMenus() {
   recent_->setToolTipsVisible(true);
   file->insertMenu(commands_.action("open_sample"), recent_);
   connect(file, &QMenu::aboutToShow, this, &MainWindow::fillRecent);
-  menu("&Process",
-       {"run_frame", "run_range", "scout", "run_take", "", "cancel", "stop_after_step", "stop_after_frame"});
+  menu("&Process", {"run_frame", "run_range", "scout", "run_take", "", "evaluate", "report", "", "cancel",
+                    "stop_after_step", "stop_after_frame"});
   QMenu* view = menu("&View", {"view_splat", "view_image", "view_scene", ""});
   const auto submenu = [&](const char* title, const QStringList& ids) {
     QMenu* made = view->addMenu(title);

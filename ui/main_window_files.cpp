@@ -10,6 +10,7 @@
 
 #include "core/pipeline/copy_project.h"
 #include "core/pipeline/project_history.h"
+#include "core/work/evaluate.h"
 #include "ui/elided_label.h"
 #include "ui/file_dialogs.h"
 #include "ui/image_page.h"
@@ -291,6 +292,7 @@ void MainWindow::showOpened() {
   } else {
     for (const std::string& warning : project.imported().warnings) warn(QString::fromStdString(warning));
   }
+  held_out_ = hasHeldOutPhotographs(project.capture());
   watch_.start(project, services_.check_capture);
   const QString seen = memory_.frameOf(QString::fromStdString(project.document().id));
   model_.startAt(seen);

@@ -311,6 +311,7 @@ void MainWindow::showSplats() {
 void MainWindow::showStages() {
   if (player_.playing()) return;  // at rest it is told of the frame that is looked at, too
   rail_->setStages(model_.stages());
+  refreshCommands();
   images_->refresh();
   if (shownView() == StudioView::Scene) joints_.refresh();
 }

@@ -272,9 +272,11 @@ void ProjectPanel::refreshScores() {
   if (row > 0) return;
   auto* hint = new ElidedLabel("None yet");
   hint->setObjectName("quiet");
-  hint->setNote(model_.isOpen() ? "Scores come from the command line:\nbeam evaluate \"" +
-                                      QString::fromStdString(model_.project().folder().string()) + "\""
-                                : QString("Open a capture or a project first"));
+  hint->setNote(
+      model_.isOpen()
+          ? "Process > Evaluate scores the held-out photographs;\nagainst ground truth: beam evaluate \"" +
+                QString::fromStdString(model_.project().folder().string()) + "\" --ground-truth FOLDER"
+          : QString("Open a capture or a project first"));
   scores_->addWidget(hint, 0, 0, 1, 3);
 }
 

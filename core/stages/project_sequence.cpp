@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/stages/project_sequence.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -258,6 +260,14 @@ class ProjectSequence final : public GaussianSequence {
 std::shared_ptr<const GaussianSequence> sequenceOf(const Project& project, Shows shows,
                                                    std::shared_ptr<const TakeSurvey> survey) {
   return std::make_shared<const ProjectSequence>(project, shows, std::move(survey));
+}
+
+bool anySolved(const TakeSurvey& survey) {
+  return std::any_of(kFrameSteps.begin(), kFrameSteps.end(), [&](const char* step) {
+    const SurveyCurve* seconds = survey.curve(std::string(step) + ".seconds");  // of every finished one
+    return seconds && std::any_of(seconds->values.begin(), seconds->values.end(),
+                                  [](double v) { return !std::isnan(v); });
+  });
 }
 
 }  // namespace beam

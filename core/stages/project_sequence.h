@@ -26,4 +26,7 @@ enum class Shows {
 std::shared_ptr<const GaussianSequence> sequenceOf(const Project& project, Shows shows,
                                                    std::shared_ptr<const TakeSurvey> survey = nullptr);
 
+// Whether Shows::Solved has Gaussians in any frame, as the survey knows it.
+bool anySolved(const TakeSurvey& survey);
+
 }  // namespace beam

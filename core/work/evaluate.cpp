@@ -143,6 +143,16 @@ EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, ComputeDevice& devi
 
 }  // namespace
 
+bool hasHeldOutPhotographs(const CaptureSet& capture) {
+  for (std::size_t v = 0; v < capture.views.size(); ++v) {
+    if (capture.views[v].split != Split::Test) continue;
+    for (std::size_t f = 0; f < capture.frames.size(); ++f) {
+      if (capture.source->has({static_cast<std::int32_t>(v)}, {static_cast<std::int32_t>(f)})) return true;
+    }
+  }
+  return false;
+}
+
 EvaluateOutcome evaluate(const EvaluateRequest& request, ComputeDevice& device, Progress& progress) {
   EvaluateOutcome outcome = request.ground_truth.empty() ? scoreHeldOut(request, device, progress)
                                                          : scoreAgainstTruth(request, device, progress);

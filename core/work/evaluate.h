@@ -8,9 +8,13 @@
 #include "core/base/progress.h"
 #include "core/pipeline/project.h"
 #include "core/render/device.h"
+#include "core/scene/capture.h"
 #include "core/work/scores.h"
 
 namespace beam {
+
+// Whether a held-out camera has a photograph of any frame: there is something to score without ground truth.
+bool hasHeldOutPhotographs(const CaptureSet& capture);
 
 struct EvaluateRequest {
   Project project;

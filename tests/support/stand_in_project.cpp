@@ -142,7 +142,8 @@ ImportedCapture openStandIn(const StandInSize& size) {
   imported.set.name = "take";
   for (int i = 0; i < size.cameras; ++i)
     imported.set.views.push_back(viewOf({.cameras = size.cameras, .size_px = size.size_px}, i));
-  imported.set.views.back().split = Split::Test;
+  for (int i = size.cameras - size.held_out; i < size.cameras; ++i)
+    imported.set.views[static_cast<std::size_t>(i)].split = Split::Test;
   for (int f = 0; f < size.frames; ++f) imported.set.frames.push_back(fmt::format("{:06}", f));
   imported.set.frames_per_second = 25;
   imported.set.masks = MaskKind::Files;

@@ -13,8 +13,9 @@
 namespace beam::testing {
 
 struct StandInSize {
-  int cameras = 4;  // cam0, cam1, ...; the last is held out
-  int frames = 6;   // 000000, 000001, ...
+  int cameras = 4;   // cam0, cam1, ...
+  int held_out = 1;  // of them, the last ones
+  int frames = 6;    // 000000, 000001, ...
   int size_px = 96, gaussians = 60;
 };
 

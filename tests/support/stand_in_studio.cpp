@@ -8,9 +8,9 @@ namespace beam::testing {
 
 namespace fs = std::filesystem;
 
-StudioServices standInServices() {
+StudioServices standInServices(const StandInSize& size) {
   const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
-  return {.pipeline = standInPipeline(),
+  return {.pipeline = standInPipeline(size),
           .job_device = device,
           .new_renderer = cpuSceneRenderers(device),
           .make_sample = [](const fs::path& folder, Progress&) { fs::create_directories(folder); },

@@ -9,7 +9,7 @@
 
 namespace beam::testing {
 
-StudioServices standInServices();
+StudioServices standInServices(const StandInSize& size = {});
 // Makes `folder`/capture, and `folder`/capture.beam with every frame solved.
 void copySolvedStandIn(const std::filesystem::path& folder);
 
