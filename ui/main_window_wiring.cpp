@@ -183,8 +183,8 @@ void MainWindow::connectJob() {
           [this](const StageStarted& stage) { showRunning(stage.stage, stage.frame); });
   connect(&job_, &JobBridge::progressed, this, [this](const StepProgress& progress) {
     run_bar_->showProgress(progress);
-    showRunning(stageOf(progress.ref.step), progress.ref.frame);
-    rail_->setRunning(stageOf(progress.ref.step), progress.report.fraction);
+    showRunning(std::string(progress.ref.step.stage()), progress.ref.frame);
+    rail_->setRunning(std::string(progress.ref.step.stage()), progress.report.fraction);
   });
   connect(&job_, &JobBridge::stepFinished, this, [this] { model_.refresh(); });
   connect(&job_, &JobBridge::stepFailed, this, [this](const StepFailed& failure) {

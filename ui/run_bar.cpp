@@ -142,7 +142,7 @@ void RunBar::showProgress(const StepProgress& p) {
   if (p.ref.lead) what += " (again, for the frames after it to build on)";
   // The time first: it is what is left in a narrow window.
   QStringList parts{remaining_.text(), what};
-  if (!p.report.label.empty() && p.report.label != p.ref.step)
+  if (!p.report.label.empty() && p.report.label != p.ref.step.text())
     parts << QString::fromStdString(p.report.label);
   if (p.report.total > 0) parts << numberText(p.report.done) + " of " + numberText(p.report.total);
   if (p.rate > 0) parts << rateText(p.rate, p.report.unit);

@@ -58,13 +58,12 @@ QString lowerFirst(QString words) {
   return words;
 }
 
-const StepInfo* findStep(const std::vector<StageInfo>& stages, const std::string& step,
-                         QString& stage_title) {
+const StepInfo* findStep(const std::vector<StageInfo>& stages, const StepId& step, QString& stage_title) {
   for (const StageInfo& stage : stages) {
-    if (stage.id != stageOf(step)) continue;
+    if (stage.id != step.stage()) continue;
     stage_title = QString::fromStdString(stage.title);
     for (const StepInfo& info : stage.steps) {
-      if (info.id == stepOf(step)) return &info;
+      if (info.id == step.name()) return &info;
     }
   }
   return nullptr;
@@ -112,20 +111,21 @@ QString countText(std::int64_t n, const QString& one, const QString& many) {
   return numberText(n) + " " + (n == 1 ? one : many.isEmpty() ? one + "s" : many);
 }
 
-QString stepTitle(const std::vector<StageInfo>& stages, const std::string& step) {
+QString stepTitle(const std::vector<StageInfo>& stages, const StepId& step) {
   QString stage;
   const StepInfo* info = findStep(stages, step, stage);
-  return info ? stage + ": " + lowerFirst(QString::fromStdString(info->title)) : QString::fromStdString(step);
+  return info ? stage + ": " + lowerFirst(QString::fromStdString(info->title))
+              : QString::fromStdString(step.text());
 }
 
 QString withStepTitles(const std::vector<StageInfo>& stages, QString text) {
   if (!text.contains('.')) return text;
   for (const StageInfo& stage : stages) {
     for (const StepInfo& step : stage.steps) {
-      const std::string id = stage.id + "." + step.id;
+      const StepId id(stage.id, step.id);
       // Not as a part of the name of a setting or a file.
       const QRegularExpression whole(
-          QString("(?<![\\w./-])%1(?![\\w/-]|\\.\\w)").arg(QRegularExpression::escape(id.c_str())));
+          QString("(?<![\\w./-])%1(?![\\w/-]|\\.\\w)").arg(QRegularExpression::escape(id.text().c_str())));
       text.replace(whole, stepTitle(stages, id));
     }
   }
@@ -136,7 +136,7 @@ QString curveTitle(const std::vector<StageInfo>& stages, const std::string& curv
   const std::size_t second = curve.find('.', curve.find('.') + 1);
   if (second == std::string::npos) return QString::fromStdString(curve);
   QString stage;
-  const StepInfo* info = findStep(stages, curve.substr(0, second), stage);
+  const StepInfo* info = findStep(stages, StepId(curve.substr(0, second)), stage);
   if (!info) return QString::fromStdString(curve);
   const QString step = QString::fromStdString(info->title);
   // "Track joints" says "Track" already.

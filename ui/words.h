@@ -21,7 +21,7 @@ QString figureText(double value);
 QString countText(std::int64_t n, const QString& one, const QString& many = {});
 
 // "surface.fit" -> "Surface: fit appearance". An id that no stage has stays as it is.
-QString stepTitle(const std::vector<StageInfo>& stages, const std::string& step);
+QString stepTitle(const std::vector<StageInfo>& stages, const StepId& step);
 // The ids of steps in a sentence as their titles: what the core and the command line say, as the window does.
 QString withStepTitles(const std::vector<StageInfo>& stages, QString text);
 // "surface.fit.seconds" -> "Surface, fit appearance: time (s)". A score that is not known here has its unit

@@ -11,8 +11,8 @@ namespace {
 constexpr int kSomeFailed = 10, kInterrupted = 75;
 
 std::string nameOf(const StepRef& ref) {
-  if (!ref.frame) return ref.step;
-  return fmt::format("frame {}{} {}", ref.frame_name, ref.lead ? " (lead)" : "", ref.step);
+  if (!ref.frame) return ref.step.text();
+  return fmt::format("frame {}{} {}", ref.frame_name, ref.lead ? " (lead)" : "", ref.step.text());
 }
 
 std::string namesOf(const std::vector<StepFailed>& failed) {

@@ -72,7 +72,7 @@ JobFinished Job::run(const RunRequest& request) {
     fail(Error::Kind::OutOfMemory,
          fmt::format(
              "out of memory in {}{}; close other programs, or ask for fewer Gaussians or smaller pictures",
-             now_.step.empty() ? "the preparation" : now_.step,
+             now_.step.empty() ? "the preparation" : now_.step.text(),
              now_.frame ? ", frame " + now_.frame_name : std::string()));
   } catch (const std::exception& e) {
     fail(Error::Kind::Bug, e.what());
@@ -89,16 +89,16 @@ void Job::runAll(const RunRequest& request) {
   const RunPlan plan = makeRunPlan(project_, request);
   finished_.notes = plan.notes;
   left_.know(request.times);
-  for (const std::string& step : plan.project_steps) expect(step, std::nullopt);
+  for (const StepId& step : plan.project_steps) expect(step, std::nullopt);
   for (const Turn& turn : plan.turns) {
-    for (const std::string& step : stepsOf(plan, turn)) expect(step, turn);
+    for (const StepId& step : stepsOf(plan, turn)) expect(step, turn);
   }
   runProjectSteps(plan);
   runFrames(plan);
 }
 
 void Job::runProjectSteps(const RunPlan& plan) {
-  for (const std::string& step : plan.project_steps) {
+  for (const StepId& step : plan.project_steps) {
     restAfter(wishes_.after_frame && last_);  // there is no frame yet: it is as good as one
     while (runStep(step, std::nullopt) == Ended::Busy) waitALittle();
   }
@@ -107,7 +107,7 @@ void Job::runProjectSteps(const RunPlan& plan) {
 void Job::runFrames(const RunPlan& plan) {
   std::deque<Turn> todo(plan.turns.begin(), plan.turns.end());
   pending_.insert(plan.turns.begin(), plan.turns.end());
-  for (const std::string& step : plan.frame_steps) {
+  for (const StepId& step : plan.frame_steps) {
     if (readsPictures(project_.setup().stages.step(step))) picture_steps_.push_back(step);
   }
   std::size_t busy_in_a_row = 0;
@@ -135,7 +135,7 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
     waits_for_.erase(lacked);
   }
   bool failed = false;
-  for (const std::string& step : stepsOf(plan, turn)) {
+  for (const StepId& step : stepsOf(plan, turn)) {
     if (failed) {
       drop(step, turn);
       continue;
@@ -156,15 +156,15 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
   return Ended::Computed;
 }
 
-Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
+Job::Ended Job::runStep(const StepId& step, std::optional<Turn> turn) {
   if (stop_.stop_requested()) throw Cancelled();
   if (acknowledged_.contains({step, turn})) return Ended::Reused;
   restAfter(wishes_.after_step);
   const StepInfo& info = project_.setup().stages.step(step);
   turn_ = turn;
   now_ = refTo(step, turn);
-  if (stages_told_.emplace(stageOf(step), turn).second) {
-    tell_(StageStarted{stageOf(step), now_.frame, now_.frame_name});
+  if (const std::string stage(step.stage()); stages_told_.emplace(stage, turn).second) {
+    tell_(StageStarted{stage, now_.frame, now_.frame_name});
   }
   const KeyIngredients ingredients =
       project_.ingredients(step, takeAtWork(), turn ? turn->frame : FrameIndex{});
@@ -183,7 +183,7 @@ Job::Ended Job::runStep(const std::string& step, std::optional<Turn> turn) {
         Error::Kind::Storage,
         fmt::format("\"{}\" is read-only: {} cannot be computed because its result could not be kept; make "
                     "the folder writable or copy it",
-                    project_.folder().string(), step));
+                    project_.folder().string(), step.text()));
   }
   const std::optional<FileLock> lease = project_.store().tryLease(key);
   if (!lease) {
@@ -204,19 +204,18 @@ bool Job::awaitsFrameBefore(const Turn& turn) const {
   return pending_.contains({*before, turn.of}) || (owned && pending_.contains({*before, *before}));
 }
 
-std::vector<std::string> Job::stepsOf(const RunPlan& plan, const Turn& turn) const {
-  std::vector<std::string> steps = turn.lead() ? plan.lead_steps : plan.frame_steps;
+std::vector<StepId> Job::stepsOf(const RunPlan& plan, const Turn& turn) const {
+  std::vector<StepId> steps = turn.lead() ? plan.lead_steps : plan.frame_steps;
   const Take take = takeOf(turn);
-  std::erase_if(steps, [&](const std::string& id) {
-    return !applies(project_.setup().stages.step(id), take, turn.frame);
-  });
+  std::erase_if(
+      steps, [&](const StepId& id) { return !applies(project_.setup().stages.step(id), take, turn.frame); });
   return steps;
 }
 
 Job::Ended Job::afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, const Turn& turn) {
-  for (const std::string& previous : step.later.previous) {
-    const auto key = ingredients.upstream.find(previousName(previous));
-    if (key == ingredients.upstream.end() || project_.store().verified(key->second)) continue;
+  for (const StepId& previous : step.later.previous) {
+    const auto key = ingredients.previous.find(previous);
+    if (key == ingredients.previous.end() || project_.store().verified(key->second)) continue;
     if (!awaitsFrameBefore(turn)) return Ended::Severed;
     waits_for_[turn] = key->second;
     return Ended::Busy;
@@ -230,7 +229,7 @@ void Job::splitTakeAt(const RunPlan& plan, const Turn& turn) {
   const FrameIndex before = *take.before(turn.frame);
   logWarning("frame {} begins a new take: frame {}, on which it would build, has no result",
              refTo({}, turn).frame_name, refTo({}, Turn{before, before}).frame_name);
-  for (const std::string& step : stepsOf(plan, turn)) {
+  for (const StepId& step : stepsOf(plan, turn)) {
     if (acknowledged_.contains({step, turn})) {
       weight_total_ -= project_.setup().stages.step(step).weight;
     } else {
@@ -238,27 +237,27 @@ void Job::splitTakeAt(const RunPlan& plan, const Turn& turn) {
     }
   }
   project_.splitTake(take, turn.frame);
-  for (const std::string& step : stepsOf(plan, turn)) expect(step, turn);
-  for (const std::string& step : plan.frame_steps) {
+  for (const StepId& step : stepsOf(plan, turn)) expect(step, turn);
+  for (const StepId& step : plan.frame_steps) {
     if (acknowledged_.erase({step, turn}) > 0)
       weight_total_ += project_.setup().stages.step(step).weight;  // to be done once more
   }
 }
 
-StepKind Job::kindOf(const std::string& step, std::optional<Turn> turn) const {
+StepKind Job::kindOf(const StepId& step, std::optional<Turn> turn) const {
   const bool later =
       turn && takeOf(*turn).before(turn->frame) && !project_.setup().stages.step(step).later.empty();
   return {step, later, settingsDigest(project_.parametersOf(step, later))};
 }
 
-void Job::expect(const std::string& step, std::optional<Turn> turn) {
+void Job::expect(const StepId& step, std::optional<Turn> turn) {
   const StepKind kind = kindOf(step, turn);
   const StepSize size = sizeOf(project_, step, kind.later);
   weight_total_ += size.weight;
   left_.expect(kind, size);
 }
 
-void Job::drop(const std::string& step, std::optional<Turn> turn) {
+void Job::drop(const StepId& step, std::optional<Turn> turn) {
   weight_total_ -= project_.setup().stages.step(step).weight;
   left_.drop(kindOf(step, turn));
 }
@@ -269,7 +268,7 @@ void Job::computeWithin(const StepRef& ref, const KeyIngredients& ingredients, c
   } catch (const std::bad_alloc&) {
     if (!pictures_ || !pictures_->giveUp()) throw;
   }
-  logDebug("{}: memory is short; once more, without decoded pictures kept for later", ref.step);
+  logDebug("{}: memory is short; once more, without decoded pictures kept for later", ref.step.text());
   compute(ref, ingredients, key);
 }
 
@@ -306,7 +305,7 @@ void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const D
   project_.store().clearFailure(key);
   returnFreeMemory();
   const double seconds = secondsSince(step_started_);
-  logInfo("{}{} done in {:.1f} s", ref.step, ref.frame ? ", frame " + ref.frame_name : std::string(),
+  logInfo("{}{} done in {:.1f} s", ref.step.text(), ref.frame ? ", frame " + ref.frame_name : std::string(),
           seconds);
   weight_done_ += weight_now_;
   left_.finish(kindOf(ref.step, turn_), seconds);
@@ -334,17 +333,12 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
         preview_.publish(std::make_shared<const JobPreview>(JobPreview{ref, std::move(cloud)}));
       },
   };
-  const std::map<std::string, Digest>& upstream = record.ingredients.upstream;
-  for (const auto& [name, key] : upstream) {
-    if (!name.starts_with(previousName(""))) context.inputs[name] = resultOf(name, key, ref);
-  }
-  for (const std::string& step : info.later.previous) {
-    if (const auto key = upstream.find(previousName(step)); key != upstream.end())
-      context.previous[step] = resultOf(key->first, key->second, ref);
-  }
+  for (const auto& [step, key] : record.ingredients.upstream) context.inputs[step] = resultOf(step, key, ref);
+  for (const auto& [step, key] : record.ingredients.previous)
+    context.previous[step] = resultOf(step, key, ref);
   if (ref.frame && readsPictures(info)) context.frames = picturesFor(frame);
   context.is_later = record.ingredients.later;
-  project_.makeStage(stageOf(ref.step))->run(info.id, context);
+  project_.makeStage(ref.step.stage())->run(info.id, context);
   record.program_version = kProgramVersion;
   record.device = device_.info().title;
   record.threads = threadCount();
@@ -356,24 +350,24 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
   record.warnings = warnings_;
 }
 
-std::filesystem::path Job::resultOf(const std::string& step, const Digest& key, const StepRef& reader) const {
+std::filesystem::path Job::resultOf(const StepId& step, const Digest& key, const StepRef& reader) const {
   if (std::optional<std::filesystem::path> found = project_.store().verified(key)) return *found;
-  throw Error(
-      Error::Kind::Data,
-      fmt::format("the result of {} that {} needs is gone; run again to compute it anew", step, reader.step));
+  throw Error(Error::Kind::Data,
+              fmt::format("the result of {} that {} needs is gone; run again to compute it anew", step.text(),
+                          reader.step.text()));
 }
 
 // A result made while its input changed would sit under a key that promises something else.
 void Job::checkInputs(const StepRef& ref, const KeyIngredients& before) const {
   const FrameIndex frame = ref.frame.value_or(FrameIndex{});
   if (project_.ingredients(ref.step, takeAtWork(), frame).inputs == before.inputs) return;
-  throw Error(
-      Error::Kind::Data,
-      fmt::format("input files of {} changed while it ran; its result is not kept, run again", ref.step));
+  throw Error(Error::Kind::Data,
+              fmt::format("input files of {} changed while it ran; its result is not kept, run again",
+                          ref.step.text()));
 }
 
 void Job::failFrame(const StepRef& ref, const std::string& message) {
-  const std::string told = fmt::format("frame {}: {} gave up: {}", ref.frame_name, ref.step, message);
+  const std::string told = fmt::format("frame {}: {} gave up: {}", ref.frame_name, ref.step.text(), message);
   try {
     project_.store().noteFailure(project_.key(ref.step, takeAtWork(), *ref.frame),
                                  {ref.step, ref.frame_name, message});
@@ -433,7 +427,7 @@ std::string Job::restNote() const {
                      last_->frame ? " of frame " + last_->frame_name : std::string());
 }
 
-StepRef Job::refTo(const std::string& step, std::optional<Turn> turn) const {
+StepRef Job::refTo(const StepId& step, std::optional<Turn> turn) const {
   if (!turn) return {step, std::nullopt, {}};
   const auto index = static_cast<std::size_t>(turn->frame.value);
   return {step, turn->frame, project_.capture().frames[index], turn->lead()};

@@ -51,20 +51,20 @@ class Job {
   void runFrames(const RunPlan& plan);
   // Busy: come back later.
   Ended runFrame(const RunPlan& plan, const Turn& turn);
-  Ended runStep(const std::string& step, std::optional<Turn> turn);
+  Ended runStep(const StepId& step, std::optional<Turn> turn);
   // Whether a step can begin now; Busy or Severed when what it reads of the frame before is not there.
   Ended afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, const Turn& turn);
   void splitTakeAt(const RunPlan& plan, const Turn& turn);
   Take takeOf(const Turn& turn) const { return project_.takeOf(turn.of); }
   bool awaitsFrameBefore(const Turn& turn) const;
-  std::vector<std::string> stepsOf(const RunPlan& plan, const Turn& turn) const;
-  StepKind kindOf(const std::string& step, std::optional<Turn> turn) const;
+  std::vector<StepId> stepsOf(const RunPlan& plan, const Turn& turn) const;
+  StepKind kindOf(const StepId& step, std::optional<Turn> turn) const;
   // Into the sums of what is to do, and out of them again when it will not be computed.
-  void expect(const std::string& step, std::optional<Turn> turn);
-  void drop(const std::string& step, std::optional<Turn> turn);
+  void expect(const StepId& step, std::optional<Turn> turn);
+  void drop(const StepId& step, std::optional<Turn> turn);
   void compute(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
   void build(const StepRef& ref, const std::filesystem::path& folder, ResultRecord& record);
-  std::filesystem::path resultOf(const std::string& step, const Digest& key, const StepRef& reader) const;
+  std::filesystem::path resultOf(const StepId& step, const Digest& key, const StepRef& reader) const;
   void checkInputs(const StepRef& ref, const KeyIngredients& before) const;
   // Computes once more without pictures held in memory when there is too little of it.
   void computeWithin(const StepRef& ref, const KeyIngredients& ingredients, const Digest& key);
@@ -77,7 +77,7 @@ class Job {
   void restAfter(bool fulfilled) const;
   std::string restNote() const;
 
-  StepRef refTo(const std::string& step, std::optional<Turn> turn) const;
+  StepRef refTo(const StepId& step, std::optional<Turn> turn) const;
   double secondsSince(Clock::time_point start) const;
 
   Project& project_;
@@ -91,10 +91,11 @@ class Job {
   double weight_total_ = 0, weight_done_ = 0, weight_now_ = 0;
   TimeLeft left_;
   bool records_read_ = false;
-  std::set<std::pair<std::string, std::optional<Turn>>> acknowledged_, stages_told_;  // by step, by stage
-  std::set<Turn> pending_;                  // what this run has not finished
-  std::map<Turn, Digest> waits_for_;        // the result of the frame before that each busy one lacked
-  std::vector<std::string> picture_steps_;  // of a frame
+  std::set<std::pair<StepId, std::optional<Turn>>> acknowledged_;
+  std::set<std::pair<std::string, std::optional<Turn>>> stages_told_;
+  std::set<Turn> pending_;             // what this run has not finished
+  std::map<Turn, Digest> waits_for_;   // the result of the frame before that each busy one lacked
+  std::vector<StepId> picture_steps_;  // of a frame
   std::unique_ptr<FrameStore> pictures_;
   std::optional<FrameIndex> pictures_of_;
   std::optional<Turn> turn_, next_;  // the one at work, none: a step of the project; the one after it

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/progress.h"
+#include "core/pipeline/step_id.h"
 #include "core/scene/gaussian_cloud.h"
 #include "core/scene/ids.h"
 
@@ -18,7 +19,7 @@ namespace beam {
 
 // Which piece of work an event is about. `frame` is absent for steps that serve the whole project.
 struct StepRef {
-  std::string step;  // full id: "surface.fit"
+  StepId step;
   std::optional<FrameIndex> frame;
   std::string frame_name;  // the capture's own; empty without frame
   bool lead = false;       // of a frame that is only there for the take after it to build on (Take::lead)

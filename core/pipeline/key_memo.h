@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/hash.h"
+#include "core/pipeline/step_id.h"
 #include "core/pipeline/takes.h"
 
 namespace beam {
@@ -34,16 +35,16 @@ class KeyMemo {
   }
 
   // A frame seen as a member of one take; another take may own it.
-  using Place = std::tuple<std::string, int, int, int, int>;
-  static Place placeOf(const std::string& step, const Take& take, FrameIndex frame) {
+  using Place = std::tuple<StepId, int, int, int, int>;
+  static Place placeOf(const StepId& step, const Take& take, FrameIndex frame) {
     return {step, take.first.value, take.last.value, take.step, frame.value};
   }
 
   std::map<Place, Digest> keys;
-  std::map<std::pair<std::string, bool>, std::map<std::string, std::string>> parameters;  // of step, later
-  std::map<std::pair<std::string, bool>, double> works;                                   // likewise
-  std::map<std::string, std::vector<std::string>> chains;  // what of the frames before enters a step
-  std::vector<Take> owners;                                // by frame
+  std::map<std::pair<StepId, bool>, std::map<std::string, std::string>> parameters;  // of step, later
+  std::map<std::pair<StepId, bool>, double> works;                                   // likewise
+  std::map<StepId, std::vector<StepId>> chains;  // what of the frames before enters a step
+  std::vector<Take> owners;                      // by frame
   std::optional<Digest> calibration;
 };
 

@@ -142,17 +142,19 @@ FieldValue Project::presetValue(std::string_view key) const {
 
 void Project::set(std::string_view key, const FieldValue& wanted) {
   const FieldValue preset_value = presetValue(key);  // refuses unknown keys
-  std::unique_ptr<Stage> stage = setup_->stages.make(stageOf(key));
+  const std::size_t dot = key.find('.');             // known: it has one
+  const std::string_view stage_id = key.substr(0, dot), name = key.substr(dot + 1);
+  std::unique_ptr<Stage> stage = setup_->stages.make(stage_id);
   try {
-    FieldSetter setter(stepOf(key), wanted);
+    FieldSetter setter(std::string(name), wanted);
     stage->parameters(setter);
   } catch (const Error& e) {
-    throw Error(e.kind(), fmt::format("{}.{}", stageOf(key), e.what()));
+    throw Error(e.kind(), fmt::format("{}.{}", stage_id, e.what()));
   }
   FieldList list;
   stage->parameters(list);
   for (const Field& field : list.fields) {
-    if (field.info.name != stepOf(key)) continue;
+    if (field.info.name != name) continue;
     memo_.clear();
     if (field.value == preset_value) {
       document_.settings.erase(std::string(key));

@@ -126,35 +126,35 @@ class Project {
   // A copy whose takes change in memory alone.
   Project sketch() const;
 
-  // --- Steps. `step` is a full id; `frame` is ignored for steps that serve the whole project. A frame is
+  // --- Steps. `frame` is ignored for steps that serve the whole project. A frame is
   // seen as a member of the take that owns it, or of the one that is named. ---
   // Why a stage cannot run ("" when it can): "needs a panorama: ...".
   std::string blockedReason(std::string_view stage) const;
   // False: the step is not for this frame of its take; it has no key and no result.
-  bool applies(std::string_view step, FrameIndex frame) const;
+  bool applies(const StepId& step, FrameIndex frame) const;
   // The user's files that the step reads itself are looked at each time; keys of what it builds on are kept
   // until settings or takes change, or forgetKeys(): every frame's key holds that of the frame before.
-  KeyIngredients ingredients(std::string_view step, FrameIndex frame) const;
-  KeyIngredients ingredients(std::string_view step, const Take& take, FrameIndex frame) const;
-  Digest key(std::string_view step, FrameIndex frame) const;
-  Digest key(std::string_view step, const Take& take, FrameIndex frame) const;
+  KeyIngredients ingredients(const StepId& step, FrameIndex frame) const;
+  KeyIngredients ingredients(const StepId& step, const Take& take, FrameIndex frame) const;
+  Digest key(const StepId& step, FrameIndex frame) const;
+  Digest key(const StepId& step, const Take& take, FrameIndex frame) const;
   void forgetKeys() const { memo_.clear(); }
   // What of the settings in force enters the key of the step: full name -> value.
-  const std::map<std::string, std::string>& parametersOf(const std::string& step, bool later) const;
+  const std::map<std::string, std::string>& parametersOf(const StepId& step, bool later) const;
   // How much there is to do by StepInfo::work with the capture and the settings in force; only ratios mean
   // something.
-  double workOf(const std::string& step, bool later) const;
+  double workOf(const StepId& step, bool later) const;
   // Whether the frame has no result yet of one of the steps. Keeps no keys: before its turn its files may
   // change.
-  bool lacksAny(const std::vector<std::string>& steps, const Take& take, FrameIndex frame) const;
-  StepState state(std::string_view step, FrameIndex frame) const;
+  bool lacksAny(const std::vector<StepId>& steps, const Take& take, FrameIndex frame) const;
+  StepState state(const StepId& step, FrameIndex frame) const;
   // Of a whole stage for a frame: the least finished of its steps that are for it; Done when there are none.
   StepState stageState(std::string_view stage, FrameIndex frame) const;
-  std::string failureOf(std::string_view step, FrameIndex frame) const;  // message; empty: none
+  std::string failureOf(const StepId& step, FrameIndex frame) const;  // message; empty: none
   // Folder of the finished result, every byte verified (once a process and version of the file); empty when
   // there is none. A damaged one is set aside with a warning and counts as none.
-  std::optional<std::filesystem::path> result(std::string_view step, FrameIndex frame) const;
-  std::optional<ResultRecord> record(std::string_view step, FrameIndex frame) const;
+  std::optional<std::filesystem::path> result(const StepId& step, FrameIndex frame) const;
+  std::optional<ResultRecord> record(const StepId& step, FrameIndex frame) const;
 
   const ResultStore& store() const { return *store_; }
   // A stage with the settings in force.
@@ -167,9 +167,9 @@ class Project {
   const std::map<std::string, FieldValue>& preset() const;
   std::string lostCaptureText() const;
   bool savesTakes() const;
-  Digest keyAt(const std::string& step, const Take& take, FrameIndex frame) const;
-  void keepKeysBefore(const std::string& step, const Take& take, FrameIndex frame) const;
-  const std::vector<std::string>& chainOf(const std::string& step) const;
+  Digest keyAt(const StepId& step, const Take& take, FrameIndex frame) const;
+  void keepKeysBefore(const StepId& step, const Take& take, FrameIndex frame) const;
+  const std::vector<StepId>& chainOf(const StepId& step) const;
 
   std::filesystem::path folder_;
   ProjectDocument document_;

@@ -68,27 +68,27 @@ void Project::adoptTakes(const Project& other) {
 
 // --- Keys ---
 
-bool Project::applies(std::string_view step, FrameIndex frame) const {
+bool Project::applies(const StepId& step, FrameIndex frame) const {
   const StepInfo& info = setup_->stages.step(step);
   return info.frames == Frames::Every || beam::applies(info, takeOf(frame), frame);
 }
 
-const std::map<std::string, std::string>& Project::parametersOf(const std::string& step, bool later) const {
-  const std::pair<std::string, bool> name(step, later);
+const std::map<std::string, std::string>& Project::parametersOf(const StepId& step, bool later) const {
+  const std::pair<StepId, bool> name(step, later);
   if (const auto known = memo_.parameters.find(name); known != memo_.parameters.end()) return known->second;
   std::map<std::string, std::string> parameters;
-  const std::string stage = stageOf(step);
+  const std::string stage(step.stage());
   const std::vector<Field> defaults = fieldsOf(*setup_->stages.make(stage));
   const std::vector<Field> in_force = fieldsOf(*makeStage(stage));
   for (std::size_t i = 0; i < in_force.size(); ++i) {
-    if (in_force[i].value == defaults[i].value || !entersKey(in_force[i].info, stepOf(step), later)) continue;
+    if (in_force[i].value == defaults[i].value || !entersKey(in_force[i].info, step.name(), later)) continue;
     parameters[stage + "." + in_force[i].info.name] = toText(in_force[i].value);
   }
   return memo_.parameters.emplace(name, std::move(parameters)).first->second;
 }
 
-double Project::workOf(const std::string& step, bool later) const {
-  const std::pair<std::string, bool> name(step, later);
+double Project::workOf(const StepId& step, bool later) const {
+  const std::pair<StepId, bool> name(step, later);
   if (const auto known = memo_.works.find(name); known != memo_.works.end()) return known->second;
   const auto number = [&](const std::string& setting) {
     const FieldValue value = this->value(setting);
@@ -109,16 +109,16 @@ double Project::workOf(const std::string& step, bool later) const {
 }
 
 // Per-frame steps, in order, whose results of earlier frames enter `step`.
-const std::vector<std::string>& Project::chainOf(const std::string& step) const {
+const std::vector<StepId>& Project::chainOf(const StepId& step) const {
   if (const auto known = memo_.chains.find(step); known != memo_.chains.end()) return known->second;
   const StageRegistry& stages = setup_->stages;
-  std::set<std::string> now;
-  std::vector<std::string> chain;
+  std::set<StepId> now;
+  std::vector<StepId> chain;
   stages.addWithReads(step, now);
-  const std::set<std::string> before = stages.readBefore(now);
+  const std::set<StepId> before = stages.readBefore(now);
   for (const StageInfo& info : stages.infos()) {
     for (const StepInfo& s : info.steps) {
-      const std::string id = info.id + "." + s.id;
+      const StepId id(info.id, s.id);
       if (s.per_frame && before.contains(id)) chain.push_back(id);
     }
   }
@@ -126,10 +126,10 @@ const std::vector<std::string>& Project::chainOf(const std::string& step) const 
 }
 
 // Walks up the take from the last frame whose keys are known, so that no key recurses further than a frame.
-void Project::keepKeysBefore(const std::string& step, const Take& take, FrameIndex frame) const {
-  const std::vector<std::string>& chain = chainOf(step);
+void Project::keepKeysBefore(const StepId& step, const Take& take, FrameIndex frame) const {
+  const std::vector<StepId>& chain = chainOf(step);
   if (chain.empty()) return;
-  const auto toDo = [&](const std::string& id, FrameIndex f) {
+  const auto toDo = [&](const StepId& id, FrameIndex f) {
     return beam::applies(setup_->stages.step(id), take, f) &&
            !memo_.keys.contains(KeyMemo::placeOf(id, take, f));
   };
@@ -139,7 +139,7 @@ void Project::keepKeysBefore(const std::string& step, const Take& take, FrameInd
     start = *before;
   }
   for (; start < frame; start.value += take.step) {
-    for (const std::string& id : chain) {
+    for (const StepId& id : chain) {
       if (!toDo(id, start)) continue;
       const Digest key = keyOf(ingredients(id, take, start));
       memo_.keys.emplace(KeyMemo::placeOf(id, take, start), key);
@@ -147,7 +147,7 @@ void Project::keepKeysBefore(const std::string& step, const Take& take, FrameInd
   }
 }
 
-Digest Project::keyAt(const std::string& step, const Take& take, FrameIndex frame) const {
+Digest Project::keyAt(const StepId& step, const Take& take, FrameIndex frame) const {
   const KeyMemo::Place place = setup_->stages.step(step).per_frame ? KeyMemo::placeOf(step, take, frame)
                                                                    : KeyMemo::placeOf(step, {}, {});
   if (const auto known = memo_.keys.find(place); known != memo_.keys.end()) return known->second;
@@ -156,16 +156,16 @@ Digest Project::keyAt(const std::string& step, const Take& take, FrameIndex fram
   return key;
 }
 
-KeyIngredients Project::ingredients(std::string_view step_id, const Take& take, FrameIndex frame) const {
+KeyIngredients Project::ingredients(const StepId& step, const Take& take, FrameIndex frame) const {
   requireCapture();  // a key made from what results tell of it would promise something else
-  const std::string step(step_id);
   const StageRegistry& stages = setup_->stages;
   const StepInfo& info = stages.step(step);
   if (!beam::applies(info, take, frame))
-    throw Error(Error::Kind::Bug, fmt::format("{} is not for frame {} of its take", step, frame.value));
+    throw Error(Error::Kind::Bug,
+                fmt::format("{} is not for frame {} of its take", step.text(), frame.value));
   const std::optional<FrameIndex> before = info.per_frame ? take.before(frame) : std::nullopt;
   const bool later = before && !info.later.empty();
-  KeyIngredients key{step, info.version, parametersOf(step, later), {}, {}, later};
+  KeyIngredients key{step, info.version, parametersOf(step, later), {}, {}, {}, later};
   for (const Reads reads : info.reads) {
     switch (reads) {
       case Reads::Calibration:
@@ -184,39 +184,37 @@ KeyIngredients Project::ingredients(std::string_view step_id, const Take& take, 
     }
   }
   keepKeysBefore(step, take, frame);
-  const auto add = [&](const std::vector<std::string>& ids, FrameIndex f, auto&& name) {
-    for (const std::string& id : ids) {
-      if (beam::applies(stages.step(id), take, f)) key.upstream[name(id)] = keyAt(id, take, f);
+  const auto add = [&](const std::vector<StepId>& ids, FrameIndex f, std::map<StepId, Digest>& to) {
+    for (const StepId& id : ids) {
+      if (beam::applies(stages.step(id), take, f)) to[id] = keyAt(id, take, f);
     }
   };
-  const auto same = [](const std::string& id) { return id; };
-  add(info.inputs, frame, same);
+  add(info.inputs, frame, key.upstream);
   if (!later) return key;
-  add(info.later.inputs, frame, same);
-  add(info.later.previous, *before, previousName);
+  add(info.later.inputs, frame, key.upstream);
+  add(info.later.previous, *before, key.previous);
   return key;
 }
 
-KeyIngredients Project::ingredients(std::string_view step, FrameIndex frame) const {
+KeyIngredients Project::ingredients(const StepId& step, FrameIndex frame) const {
   return ingredients(step, takeOf(frame), frame);
 }
 
-Digest Project::key(std::string_view step, FrameIndex frame) const { return key(step, takeOf(frame), frame); }
+Digest Project::key(const StepId& step, FrameIndex frame) const { return key(step, takeOf(frame), frame); }
 
-Digest Project::key(std::string_view step, const Take& take, FrameIndex frame) const {
-  const std::string id(step);
-  const KeyMemo::Place place =
-      setup_->stages.step(step).per_frame ? KeyMemo::placeOf(id, take, frame) : KeyMemo::placeOf(id, {}, {});
-  const Digest key = keyOf(ingredients(id, take, frame));
+Digest Project::key(const StepId& step, const Take& take, FrameIndex frame) const {
+  const KeyMemo::Place place = setup_->stages.step(step).per_frame ? KeyMemo::placeOf(step, take, frame)
+                                                                   : KeyMemo::placeOf(step, {}, {});
+  const Digest key = keyOf(ingredients(step, take, frame));
   const auto [known, fresh] = memo_.keys.try_emplace(place, key);
   if (fresh || known->second == key) return key;
   memo_.clear();  // its input files are others now: so is the key of all that builds on them
-  return keyAt(id, take, frame);
+  return keyAt(step, take, frame);
 }
 
-bool Project::lacksAny(const std::vector<std::string>& steps, const Take& take, FrameIndex frame) const {
+bool Project::lacksAny(const std::vector<StepId>& steps, const Take& take, FrameIndex frame) const {
   const std::map<KeyMemo::Place, Digest> kept = memo_.keys;
-  const bool lacks = std::any_of(steps.begin(), steps.end(), [&](const std::string& step) {
+  const bool lacks = std::any_of(steps.begin(), steps.end(), [&](const StepId& step) {
     return beam::applies(setup_->stages.step(step), take, frame) &&
            !store_->has(keyOf(ingredients(step, take, frame)));
   });
@@ -229,9 +227,9 @@ bool Project::lacksAny(const std::vector<std::string>& steps, const Take& take, 
 std::string Project::blockedReason(std::string_view stage) const {
   const StageInfo& info = setup_->stages.info(stage);
   if (without_capture_) return lostCaptureText();
-  std::set<std::string> all;
-  for (const StepInfo& step : info.steps) setup_->stages.addWithReads(info.id + "." + step.id, all);
-  const bool needs_environment = std::any_of(all.begin(), all.end(), [&](const std::string& id) {
+  std::set<StepId> all;
+  for (const StepInfo& step : info.steps) setup_->stages.addWithReads(StepId(info.id, step.id), all);
+  const bool needs_environment = std::any_of(all.begin(), all.end(), [&](const StepId& id) {
     const std::vector<Reads>& reads = setup_->stages.step(id).reads;
     return std::find(reads.begin(), reads.end(), Reads::Environment) != reads.end();
   });
@@ -247,8 +245,8 @@ std::string Project::blockedReason(std::string_view stage) const {
       info.title);
 }
 
-StepState Project::state(std::string_view step, FrameIndex frame) const {
-  if (!blockedReason(stageOf(step)).empty()) return StepState::Blocked;
+StepState Project::state(const StepId& step, FrameIndex frame) const {
+  if (!blockedReason(step.stage()).empty()) return StepState::Blocked;
   if (!applies(step, frame)) return StepState::NotNeeded;
   const Digest digest = key(step, frame);
   if (store_->has(digest)) return StepState::Done;
@@ -259,25 +257,25 @@ StepState Project::state(std::string_view step, FrameIndex frame) const {
 StepState Project::stageState(std::string_view stage, FrameIndex frame) const {
   const StageInfo& info = setup_->stages.info(stage);
   for (const StepInfo& step : info.steps) {
-    const StepState found = state(info.id + "." + step.id, frame);
+    const StepState found = state(StepId(info.id, step.id), frame);
     if (found != StepState::Done && found != StepState::NotNeeded) return found;
   }
   return StepState::Done;
 }
 
-std::string Project::failureOf(std::string_view step, FrameIndex frame) const {
+std::string Project::failureOf(const StepId& step, FrameIndex frame) const {
   if (without_capture_ || !applies(step, frame)) return {};
   const std::optional<FailureNote> note = store_->failure(key(step, frame));
   return note ? note->message : std::string();
 }
 
-std::optional<fs::path> Project::result(std::string_view step, FrameIndex frame) const {
-  if (!blockedReason(stageOf(step)).empty() || !applies(step, frame)) return std::nullopt;
+std::optional<fs::path> Project::result(const StepId& step, FrameIndex frame) const {
+  if (!blockedReason(step.stage()).empty() || !applies(step, frame)) return std::nullopt;
   return store_->verified(key(step, frame));
 }
 
-std::optional<ResultRecord> Project::record(std::string_view step, FrameIndex frame) const {
-  if (!blockedReason(stageOf(step)).empty() || !applies(step, frame)) return std::nullopt;
+std::optional<ResultRecord> Project::record(const StepId& step, FrameIndex frame) const {
+  if (!blockedReason(step.stage()).empty() || !applies(step, frame)) return std::nullopt;
   return store_->record(key(step, frame));
 }
 

@@ -55,7 +55,7 @@ std::string frameName(const Project& project, FrameIndex frame) {
 }
 
 // "done 000002, 000006; pending 8 more": the finished and failed by name, what is only pending as a count.
-std::string stepText(const Project& project, const std::string& id, const StepInfo& step) {
+std::string stepText(const Project& project, const StepId& id, const StepInfo& step) {
   if (!step.per_frame) return toText(project.state(id, FrameIndex{}));
   std::map<StepState, std::vector<std::string>> by_state;
   for (const FrameIndex frame : framesOf(project, step)) {
@@ -97,7 +97,15 @@ Json takesJson(const Project& project) {
   return takes;
 }
 
-Json idsJson(const Later& later) { return {{"inputs", later.inputs}, {"previous", later.previous}}; }
+Json idsJson(const std::vector<StepId>& steps) {
+  Json ids = Json::array();
+  for (const StepId& step : steps) ids.push_back(step.text());
+  return ids;
+}
+
+Json idsJson(const Later& later) {
+  return {{"inputs", idsJson(later.inputs)}, {"previous", idsJson(later.previous)}};
+}
 
 const char* toText(Frames frames) {
   switch (frames) {
@@ -111,7 +119,7 @@ const char* toText(Frames frames) {
   return "";
 }
 
-std::string failuresText(const Project& project, const std::string& id, const StepInfo& step) {
+std::string failuresText(const Project& project, const StepId& id, const StepInfo& step) {
   std::string text;
   for (const FrameIndex frame : framesOf(project, step)) {
     if (project.state(id, frame) != StepState::Failed) continue;
@@ -120,8 +128,8 @@ std::string failuresText(const Project& project, const std::string& id, const St
   return text;
 }
 
-Json stepJson(const Project& project, const std::string& id, const StepInfo& step) {
-  Json j = {{"id", id}, {"title", step.title}};
+Json stepJson(const Project& project, const StepId& id, const StepInfo& step) {
+  Json j = {{"id", id.text()}, {"title", step.title}};
   if (!step.per_frame) {
     j["state"] = toText(project.state(id, FrameIndex{}));
     j["key"] = project.key(id, FrameIndex{}).hex();
@@ -176,8 +184,9 @@ std::string statusText(const Project& project) {
       continue;
     }
     for (const StepInfo& step : info.steps) {
-      const std::string id = info.id + "." + step.id;
-      text += fmt::format("  {:<18} {}\n", id, stepText(project, id, step)) + failuresText(project, id, step);
+      const StepId id(info.id, step.id);
+      text += fmt::format("  {:<18} {}\n", id.text(), stepText(project, id, step)) +
+              failuresText(project, id, step);
     }
   }
   text.pop_back();
@@ -200,7 +209,7 @@ std::string statusJson(const Project& project) {
     if (const std::string why = project.blockedReason(info.id); !why.empty()) stage["blocked"] = why;
     stage["steps"] = Json::array();
     for (const StepInfo& step : info.steps)
-      stage["steps"].push_back(stepJson(project, info.id + "." + step.id, step));
+      stage["steps"].push_back(stepJson(project, StepId(info.id, step.id), step));
     j["stages"].push_back(std::move(stage));
   }
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
@@ -235,7 +244,7 @@ std::string stagesJson(const StageRegistry& stages) {
                                 {"version", step.version},
                                 {"per_frame", step.per_frame},
                                 {"frames", toText(step.frames)},
-                                {"inputs", step.inputs},
+                                {"inputs", idsJson(step.inputs)},
                                 {"later", idsJson(step.later)}});
     }
     stage["settings"] = Json::array();

@@ -4,9 +4,14 @@
 #include <fmt/format.h>
 
 namespace beam {
+namespace {
+
+constexpr std::string_view kPrevious = "previous ";
+
+}  // namespace
 
 std::string canonicalText(const KeyIngredients& ingredients) {
-  std::string text = fmt::format("step {}\nversion {}\n", ingredients.step, ingredients.version);
+  std::string text = fmt::format("step {}\nversion {}\n", ingredients.step.text(), ingredients.version);
   if (ingredients.later) text += "later\n";
   // Values may be any text: their length keeps two different lists from reading alike.
   for (const auto& [name, value] : ingredients.parameters) {
@@ -14,13 +19,29 @@ std::string canonicalText(const KeyIngredients& ingredients) {
   }
   for (const auto& [name, digest] : ingredients.inputs)
     text += fmt::format("input {} {}\n", name, digest.hex());
-  for (const auto& [step, key] : ingredients.upstream) text += fmt::format("result {} {}\n", step, key.hex());
+  for (const auto& [name, key] : namedResults(ingredients))
+    text += fmt::format("result {} {}\n", name, key.hex());
   return text;
 }
 
 Digest keyOf(const KeyIngredients& ingredients) { return digestOf(canonicalText(ingredients)); }
 
-std::string previousName(std::string_view step) { return fmt::format("previous {}", step); }
+std::map<std::string, Digest> namedResults(const KeyIngredients& ingredients) {
+  std::map<std::string, Digest> named;
+  for (const auto& [step, key] : ingredients.upstream) named[step.text()] = key;
+  for (const auto& [step, key] : ingredients.previous) named[std::string(kPrevious) + step.text()] = key;
+  return named;
+}
+
+void setNamedResults(KeyIngredients& ingredients, const std::map<std::string, Digest>& named) {
+  for (const auto& [name, key] : named) {
+    if (name.starts_with(kPrevious)) {
+      ingredients.previous[StepId(name.substr(kPrevious.size()))] = key;
+    } else {
+      ingredients.upstream[StepId(name)] = key;
+    }
+  }
+}
 
 bool entersKey(const FieldInfo& field, std::string_view step, bool later) {
   if (field.effect != Effect::Result) return false;

@@ -10,28 +10,32 @@
 
 #include "core/base/fields.h"
 #include "core/base/hash.h"
+#include "core/pipeline/step_id.h"
 
 namespace beam {
 
 struct KeyIngredients {
-  std::string step;  // full id
+  StepId step;
   int version = 1;
   std::map<std::string, std::string>
       parameters;                          // full name -> value; only those that differ from the default
   std::map<std::string, Digest> inputs;    // "calibration", "pictures", "environment"
-  std::map<std::string, Digest> upstream;  // full step id -> key of its result; see previousName()
+  std::map<StepId, Digest> upstream;       // keys of the results it reads
+  std::map<StepId, Digest> previous = {};  // of those of the frame before
   bool later = false;                      // builds on the frame before
 };
 
-// How `upstream` calls the result of a step in the frame before: "previous surface.refine".
-std::string previousName(std::string_view step);
+// Both kinds of results by the names that they have in keys and records: "surface.seed", and of the frame
+// before "previous surface.refine".
+std::map<std::string, Digest> namedResults(const KeyIngredients& ingredients);
+void setNamedResults(KeyIngredients& ingredients, const std::map<std::string, Digest>& named);
 
 // One line a fact, sorted; equal on every machine.
 std::string canonicalText(const KeyIngredients& ingredients);
 Digest keyOf(const KeyIngredients& ingredients);
 
-// Whether a stage's field (name without the stage id) has a say in a step: result fields that are ungrouped
-// or in the group named after the step; of a later frame also those in the group "later".
+// Whether a stage's field (name without the stage id) has a say in its step of that name: result fields that
+// are ungrouped or in the group named after the step; of a later frame also those in the group "later".
 bool entersKey(const FieldInfo& field, std::string_view step, bool later = false);
 
 }  // namespace beam

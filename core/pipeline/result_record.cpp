@@ -40,11 +40,11 @@ std::string toJson(const ResultRecord& r) {
   Json j;
   j["format"] = 1;
   j["key"] = r.key.hex();
-  j["step"] = r.ingredients.step;
+  j["step"] = r.ingredients.step.text();
   j["version"] = r.ingredients.version;
   j["parameters"] = r.ingredients.parameters;
   j["inputs"] = digests(r.ingredients.inputs);
-  j["upstream"] = digests(r.ingredients.upstream);
+  j["upstream"] = digests(namedResults(r.ingredients));
   if (r.ingredients.later) j["later"] = true;
   j["frame"] = r.frame;
   if (r.lead) j["lead"] = true;
@@ -67,11 +67,11 @@ ResultRecord parseResultRecord(std::string_view json) {
   return parsed("result.json", json, [](const Json& j) {
     ResultRecord r;
     r.key = parseDigest(j.at("key").get<std::string>());
-    r.ingredients.step = j.at("step").get<std::string>();
+    r.ingredients.step = StepId(j.at("step").get<std::string>());
     r.ingredients.version = j.at("version").get<int>();
     r.ingredients.parameters = j.at("parameters").get<std::map<std::string, std::string>>();
     r.ingredients.inputs = parseDigests(j.at("inputs"));
-    r.ingredients.upstream = parseDigests(j.at("upstream"));
+    setNamedResults(r.ingredients, parseDigests(j.at("upstream")));
     r.ingredients.later = j.value("later", false);
     r.frame = j.at("frame").get<std::string>();
     r.lead = j.value("lead", false);
@@ -92,13 +92,13 @@ ResultRecord parseResultRecord(std::string_view json) {
 }
 
 std::string toJson(const FailureNote& note) {
-  const Json j = {{"step", note.step}, {"frame", note.frame}, {"message", note.message}};
+  const Json j = {{"step", note.step.text()}, {"frame", note.frame}, {"message", note.message}};
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 FailureNote parseFailureNote(std::string_view json) {
   return parsed("failure note", json, [](const Json& j) {
-    return FailureNote{j.at("step").get<std::string>(), j.at("frame").get<std::string>(),
+    return FailureNote{StepId(j.at("step").get<std::string>()), j.at("frame").get<std::string>(),
                        j.at("message").get<std::string>()};
   });
 }

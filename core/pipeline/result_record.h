@@ -40,7 +40,8 @@ ResultRecord parseResultRecord(std::string_view json);
 
 // Why a step failed the last time; kept under failures/ until it succeeds.
 struct FailureNote {
-  std::string step, frame, message;
+  StepId step;
+  std::string frame, message;
 };
 std::string toJson(const FailureNote& note);
 FailureNote parseFailureNote(std::string_view json);

@@ -14,7 +14,7 @@ class Estimator {
   }
 
   // `owned`: nobody asked for a lead.
-  void step(const std::string& id, const Take& take, FrameIndex frame, bool owned) {
+  void step(const StepId& id, const Take& take, FrameIndex frame, bool owned) {
     const StepInfo& info = project_.setup().stages.step(id);
     if (info.per_frame && !applies(info, take, frame)) return;
     ++out_.steps_total;
@@ -53,10 +53,10 @@ RunEstimate estimateRun(const Project& project, const RunRequest& request, const
   arrangeTakes(sketch, request);
   const RunPlan plan = makeRunPlan(sketch, request);
   Estimator estimator(sketch, times);
-  for (const std::string& step : plan.project_steps) estimator.step(step, {}, {}, false);
+  for (const StepId& step : plan.project_steps) estimator.step(step, {}, {}, false);
   for (const Turn& turn : plan.turns) {
     const Take take = sketch.takeOf(turn.of);
-    for (const std::string& step : turn.lead() ? plan.lead_steps : plan.frame_steps)
+    for (const StepId& step : turn.lead() ? plan.lead_steps : plan.frame_steps)
       estimator.step(step, take, turn.frame, !turn.lead());
   }
   RunEstimate out = estimator.finish(plan);

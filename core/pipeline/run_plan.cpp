@@ -14,8 +14,8 @@
 namespace beam {
 namespace {
 
-void addStage(const StageRegistry& stages, const StageInfo& info, std::set<std::string>& chosen) {
-  for (const StepInfo& step : info.steps) stages.addWithReads(info.id + "." + step.id, chosen);
+void addStage(const StageRegistry& stages, const StageInfo& info, std::set<StepId>& chosen) {
+  for (const StepInfo& step : info.steps) stages.addWithReads(StepId(info.id, step.id), chosen);
 }
 
 std::vector<FrameIndex> framesOf(const Project& project, const RunRequest& request) {
@@ -108,7 +108,7 @@ RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
     throw Error(Error::Kind::Usage,
                 fmt::format("every: expected a number of frames, 1 or more, found {}", request.every));
   RunPlan plan;
-  std::set<std::string> chosen;
+  std::set<StepId> chosen;
   if (!request.stage.empty()) {
     const StageInfo& info = stages.info(request.stage);
     if (const std::string why = project.blockedReason(info.id); !why.empty())
@@ -127,12 +127,12 @@ RunPlan makeRunPlan(const Project& project, const RunRequest& request) {
   }
   for (const StageInfo& info : stages.infos()) {
     for (const StepInfo& step : info.steps) {
-      const std::string id = info.id + "." + step.id;
+      const StepId id(info.id, step.id);
       if (chosen.count(id)) (step.per_frame ? plan.frame_steps : plan.project_steps).push_back(id);
     }
   }
-  const std::set<std::string> before = stages.readBefore(chosen);
-  for (const std::string& id : plan.frame_steps) {
+  const std::set<StepId> before = stages.readBefore(chosen);
+  for (const StepId& id : plan.frame_steps) {
     if (before.contains(id)) plan.lead_steps.push_back(id);
   }
   std::vector<FrameIndex> frames;

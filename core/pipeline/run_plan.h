@@ -40,11 +40,11 @@ struct Turn {
 };
 
 struct RunPlan {
-  std::vector<std::string> project_steps;  // full ids, in order; once a run
-  std::vector<std::string> frame_steps;    // in order; for every frame
-  std::vector<std::string> lead_steps;     // of them, those that later frames build on
-  std::vector<Turn> turns;                 // take by take, in order
-  std::vector<std::string> notes;          // stages left out, and what they would need
+  std::vector<StepId> project_steps;  // in order; once a run
+  std::vector<StepId> frame_steps;    // in order; for every frame
+  std::vector<StepId> lead_steps;     // of them, those that later frames build on
+  std::vector<Turn> turns;            // take by take, in order
+  std::vector<std::string> notes;     // stages left out, and what they would need
 };
 
 // Makes the takes of the project those of the request (Project::changeTakes); before makeRunPlan.

@@ -22,8 +22,8 @@ std::vector<Field> fieldsOf(Stage& stage) {
   return std::move(list.fields);
 }
 
-std::vector<std::string> readsOf(const StepInfo& step) {
-  std::vector<std::string> all = step.inputs;
+std::vector<StepId> readsOf(const StepInfo& step) {
+  std::vector<StepId> all = step.inputs;
   for (const auto* more : {&step.later.inputs, &step.later.previous}) {
     all.insert(all.end(), more->begin(), more->end());
   }

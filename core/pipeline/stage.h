@@ -14,6 +14,7 @@
 
 #include "core/base/fields.h"
 #include "core/base/progress.h"
+#include "core/pipeline/step_id.h"
 #include "core/pipeline/takes.h"
 #include "core/scene/capture.h"
 #include "core/scene/gaussian_cloud.h"
@@ -41,7 +42,7 @@ enum class Frames {
 // What a later frame of a take (not its first) reads besides: results of the same frame, and of the frame
 // before. Its key has the parameters of the group "later", too.
 struct Later {
-  std::vector<std::string> inputs = {}, previous = {};  // full ids; `previous` may stand anywhere
+  std::vector<StepId> inputs = {}, previous = {};  // `previous` may stand anywhere
   bool empty() const { return inputs.empty() && previous.empty(); }
 };
 
@@ -56,23 +57,22 @@ struct StepWork {
 
 // What can be seen of a result, told to those who show a project and do not know its steps.
 struct StepShown {
-  bool frame = false;        // a frame can be looked at from it, whatever the settings it was made with
-  std::string surface = "";  // full id of the step whose result it lies on, its own for that step; "": none
-  bool last = false;         // with it a frame has all there is to show: what is older is of no interest
+  bool frame = false;   // a frame can be looked at from it, whatever the settings it was made with
+  StepId surface = {};  // the step whose result it lies on, its own for that step; empty: none
+  bool last = false;    // with it a frame has all there is to show: what is older is of no interest
   // Files that a project without its capture is looked at by: its cameras, the panorama in force.
   std::string cameras_file = "", panorama_file = "";
 };
 
 struct StepInfo {
-  std::string id;           // inside its stage: "fit"; the full id is "surface.fit". Never renamed
+  std::string id;           // StepId::name(): "fit". Never renamed
   std::string title;        // "Fit appearance"
   std::string source = "";  // "BEAM 3.1, eq. 9"
   int version = 1;          // raise when equal inputs would now give another result
   bool per_frame = true;
   std::vector<Reads> reads = {};
-  // Full ids of the steps whose results it reads; all stand earlier. One that is not for the frame is left
-  // out.
-  std::vector<std::string> inputs = {};
+  // The steps whose results it reads; all stand earlier. One that is not for the frame is left out.
+  std::vector<StepId> inputs = {};
   double weight = 1;  // usual share of time, for the remaining time of a run
   Frames frames = Frames::Every;
   Later later = {};
@@ -83,7 +83,7 @@ struct StepInfo {
 // Whether the step is for this frame of the take.
 bool applies(const StepInfo& step, const Take& take, FrameIndex frame);
 // Everything it reads in any frame: inputs, later ones, those of the frame before.
-std::vector<std::string> readsOf(const StepInfo& step);
+std::vector<StepId> readsOf(const StepInfo& step);
 
 // Full names of the settings that say how a run over all frames is cut into takes; "": there is none.
 struct TakeSettings {
@@ -104,22 +104,22 @@ struct StepContext {
   FrameIndex frame;                                     // of a per-frame step
   std::optional<std::filesystem::path> environment;     // the panorama's file
   std::filesystem::path folder;                         // write every file of the result here
-  std::map<std::string, std::filesystem::path> inputs;  // full step id -> folder of its result, verified
+  std::map<StepId, std::filesystem::path> inputs;       // folders of their results, verified
   std::function<FieldValue(std::string_view)> setting;  // in force, by full name; of stages in `inputs` only
   ComputeDevice& device;
   Progress& progress;
   std::function<void(std::shared_ptr<const GaussianCloud>)> preview;
   std::map<std::string, double> scores = {};  // figures for the record: counts, losses
-  // Of a later frame: full step id -> folder of the result of the frame before, verified.
-  std::map<std::string, std::filesystem::path> previous = {};
+  // Of a later frame: folders of the results of the frame before, verified.
+  std::map<StepId, std::filesystem::path> previous = {};
   bool is_later = false;
   FrameStore* frames = nullptr;  // pictures already decoded; null: whoever wants some loads them
 
-  const std::filesystem::path& input(const std::string& step) const { return inputs.at(step); }
+  const std::filesystem::path& input(const StepId& step) const { return inputs.at(step); }
   // Whether the step builds on the frame before; never for the first of a take.
   bool later() const { return is_later; }
   // Null: there is none, because the step is not for that frame, or this one is no later frame.
-  const std::filesystem::path* previousResult(const std::string& step) const {
+  const std::filesystem::path* previousResult(const StepId& step) const {
     const auto found = previous.find(step);
     return found == previous.end() ? nullptr : &found->second;
   }

@@ -9,30 +9,23 @@
 
 namespace beam {
 
-std::string stageOf(std::string_view step) { return std::string(step.substr(0, step.find('.'))); }
-
-std::string stepOf(std::string_view step) {
-  const std::size_t dot = step.find('.');
-  return dot == std::string_view::npos ? std::string() : std::string(step.substr(dot + 1));
-}
-
 void StageRegistry::add(Maker maker) {
   const StageInfo info = maker()->info();
-  std::set<std::string> known;
+  std::set<StepId> known;
   for (const StageInfo& earlier : infos_) {
     if (earlier.id == info.id)
       throw Error(Error::Kind::Bug, fmt::format("stage {} is registered twice", info.id));
-    for (const StepInfo& step : earlier.steps) known.insert(earlier.id + "." + step.id);
+    for (const StepInfo& step : earlier.steps) known.insert(StepId(earlier.id, step.id));
   }
   for (const StepInfo& step : info.steps) {
     for (const auto* inputs : {&step.inputs, &step.later.inputs}) {
-      for (const std::string& input : *inputs) {
+      for (const StepId& input : *inputs) {
         if (known.count(input)) continue;
         throw Error(Error::Kind::Bug, fmt::format("step {}.{} reads {}, which does not stand before it",
-                                                  info.id, step.id, input));
+                                                  info.id, step.id, input.text()));
       }
     }
-    known.insert(info.id + "." + step.id);
+    known.insert(StepId(info.id, step.id));
   }
   infos_.push_back(info);
   makers_.push_back(std::move(maker));
@@ -51,30 +44,30 @@ std::unique_ptr<Stage> StageRegistry::make(std::string_view stage) const { retur
 
 const StageInfo& StageRegistry::info(std::string_view stage) const { return infos_[indexOf(stage)]; }
 
-const StepInfo& StageRegistry::step(std::string_view step) const {
-  for (const StepInfo& s : info(stageOf(step)).steps) {
-    if (s.id == stepOf(step)) return s;
+const StepInfo& StageRegistry::step(const StepId& step) const {
+  for (const StepInfo& s : info(step.stage()).steps) {
+    if (s.id == step.name()) return s;
   }
-  throw Error(Error::Kind::Usage, fmt::format("stage {} has no step \"{}\"", stageOf(step), stepOf(step)));
+  throw Error(Error::Kind::Usage, fmt::format("stage {} has no step \"{}\"", step.stage(), step.name()));
 }
 
-void StageRegistry::addWithReads(const std::string& step, std::set<std::string>& all) const {
+void StageRegistry::addWithReads(const StepId& step, std::set<StepId>& all) const {
   if (!all.insert(step).second) return;
-  for (const std::string& read : readsOf(this->step(step))) addWithReads(read, all);
+  for (const StepId& read : readsOf(this->step(step))) addWithReads(read, all);
 }
 
-std::set<std::string> StageRegistry::readBefore(const std::set<std::string>& steps) const {
-  std::set<std::string> before;
-  for (const std::string& id : steps) {
-    for (const std::string& previous : step(id).later.previous) addWithReads(previous, before);
+std::set<StepId> StageRegistry::readBefore(const std::set<StepId>& steps) const {
+  std::set<StepId> before;
+  for (const StepId& id : steps) {
+    for (const StepId& previous : step(id).later.previous) addWithReads(previous, before);
   }
   return before;
 }
 
-StepShown shownOf(const StageRegistry& stages, std::string_view step) {
+StepShown shownOf(const StageRegistry& stages, const StepId& step) {
   for (const StageInfo& stage : stages.infos()) {
     for (const StepInfo& info : stage.steps) {
-      if (stage.id + "." + info.id == step) return info.shown;
+      if (StepId(stage.id, info.id) == step) return info.shown;
     }
   }
   return {};

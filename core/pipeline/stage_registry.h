@@ -24,12 +24,12 @@ class StageRegistry {
   // Throws Error{Usage} that names the nearest stage.
   std::unique_ptr<Stage> make(std::string_view stage) const;
   const StageInfo& info(std::string_view stage) const;
-  // `step`: full id. Throws Error{Usage} likewise.
-  const StepInfo& step(std::string_view step) const;
+  // Throws Error{Usage} likewise.
+  const StepInfo& step(const StepId& step) const;
   // Into `all`: the step and everything that enters it, in this frame and those before.
-  void addWithReads(const std::string& step, std::set<std::string>& all) const;
+  void addWithReads(const StepId& step, std::set<StepId>& all) const;
   // Steps of earlier frames that `steps` of a later one read, with everything that enters these.
-  std::set<std::string> readBefore(const std::set<std::string>& steps) const;
+  std::set<StepId> readBefore(const std::set<StepId>& steps) const;
 
  private:
   std::size_t indexOf(std::string_view stage) const;
@@ -38,10 +38,7 @@ class StageRegistry {
   std::vector<Maker> makers_;
 };
 
-// "surface.fit" -> "surface"; "fit".
-std::string stageOf(std::string_view step);
-std::string stepOf(std::string_view step);
-// Of a result by its step's full id; nothing of a step that this program does not have.
-StepShown shownOf(const StageRegistry& stages, std::string_view step);
+// Of a result by its step; nothing of a step that this program does not have.
+StepShown shownOf(const StageRegistry& stages, const StepId& step);
 
 }  // namespace beam

@@ -70,7 +70,7 @@ StepKind kindOf(const KeyIngredients& made) {
   return {made.step, made.later, settingsDigest(made.parameters)};
 }
 
-StepSize sizeOf(const Project& project, const std::string& step, bool later) {
+StepSize sizeOf(const Project& project, const StepId& step, bool later) {
   return {project.setup().stages.step(step).weight, project.workOf(step, later)};
 }
 
@@ -137,7 +137,7 @@ std::optional<Seconds> StepTimes::guess(const StepKind& kind, const StepSize& si
 std::string toJson(const StepTimes& times) {
   Json j = Json::array();
   for (const auto& [kind, m] : times.measured_) {
-    j.push_back({{"step", kind.step},
+    j.push_back({{"step", kind.step.text()},
                  {"later", kind.later},
                  {"settings", kind.settings.hex()},
                  {"weight", m.weight},
@@ -151,7 +151,7 @@ StepTimes parseStepTimes(std::string_view json) {
   try {
     StepTimes times;
     for (const Json& j : Json::parse(json)) {
-      const StepKind kind{j.at("step").get<std::string>(), j.at("later").get<bool>(),
+      const StepKind kind{StepId(j.at("step").get<std::string>()), j.at("later").get<bool>(),
                           parseDigest(j.at("settings").get<std::string>())};
       const auto seconds = j.at("seconds").get<std::vector<double>>();
       auto works = j.value("works", std::vector<double>());
@@ -167,9 +167,9 @@ StepTimes parseStepTimes(std::string_view json) {
 }
 
 StepTimes readStepTimes(const Project& project) {
-  std::map<std::string, double> weights;
+  std::map<StepId, double> weights;
   for (const StageInfo& info : project.setup().stages.infos()) {
-    for (const StepInfo& step : info.steps) weights[info.id + "." + step.id] = step.weight;
+    for (const StepInfo& step : info.steps) weights[StepId(info.id, step.id)] = step.weight;
   }
   StepTimes times;
   for (const Digest& key : project.store().keys()) {

@@ -19,7 +19,7 @@ class Project;
 
 // Steps that should take equally long for equal work: first frames of takes and later ones are different.
 struct StepKind {
-  std::string step;  // full id
+  StepId step;
   bool later = false;
   Digest settings;  // of the step's own parameters
   auto operator<=>(const StepKind&) const = default;
@@ -32,7 +32,7 @@ struct StepSize {
   double weight = 1;  // StepInfo::weight: compares steps
   double work = 1;    // Project::workOf: compares captures and settings; 0: not known
 };
-StepSize sizeOf(const Project& project, const std::string& step, bool later);
+StepSize sizeOf(const Project& project, const StepId& step, bool later);
 
 struct Seconds {
   double low = 0, likely = 0, high = 0;

@@ -89,14 +89,14 @@ const SurveyCurve* TakeSurvey::curve(std::string_view name) const {
 struct TakeSurveyor::Pass {
   const Project& project;
   std::set<Digest> results, failures, leases;
-  std::set<std::pair<std::string, std::string>> made;  // step and frame that have a result of any key
+  std::set<std::pair<StepId, std::string>> made;  // step and frame that have a result of any key
   std::map<std::string, std::vector<double>> curves;
   std::vector<std::string> stamps;  // by frame: keys of what is done
   std::set<std::size_t> complete;   // frames that have the last there is to show
 
-  void draw(const std::string& step, const std::map<std::string, double>& scores, std::size_t frame) {
+  void draw(const StepId& step, const std::map<std::string, double>& scores, std::size_t frame) {
     for (const auto& [name, value] : scores) {
-      auto& curve = curves[fmt::format("{}.{}", step, name)];
+      auto& curve = curves[fmt::format("{}.{}", step.text(), name)];
       curve.resize(stamps.size(), std::numeric_limits<double>::quiet_NaN());
       curve[frame] = value;
     }
@@ -111,8 +111,7 @@ struct TakeSurveyor::Pass {
   }
 };
 
-const TakeSurveyor::Keys& TakeSurveyor::keysOf(const Project& project, const std::string& step,
-                                               bool per_frame) {
+const TakeSurveyor::Keys& TakeSurveyor::keysOf(const Project& project, const StepId& step, bool per_frame) {
   const auto [entry, fresh] = keys_.try_emplace(step);
   if (!fresh) return entry->second;
   try {
@@ -158,7 +157,7 @@ void TakeSurveyor::keepLeadKeys(const Project& project) {
         if (!project.blockedReason(info.id).empty()) continue;
         for (const StepInfo& step : info.steps) {
           if (step.per_frame && applies(step, take, f))
-            leads_.insert(project.key(info.id + "." + step.id, take, f));
+            leads_.insert(project.key(StepId(info.id, step.id), take, f));
         }
       }
     }
@@ -185,7 +184,7 @@ void TakeSurveyor::listLeftovers(const Pass& pass, TakeSurvey& survey) const {
   }
 }
 
-void TakeSurveyor::surveyStep(const std::string& id, const StepInfo& step, Pass& pass, TakeSurvey& survey) {
+void TakeSurveyor::surveyStep(const StepId& id, const StepInfo& step, Pass& pass, TakeSurvey& survey) {
   const Keys& keys = keysOf(pass.project, id, step.per_frame);
   SurveyLane& lane = survey.lanes.back();
   for (std::size_t f = 0; f < survey.frames.size(); ++f) {
@@ -211,7 +210,7 @@ void TakeSurveyor::surveyStep(const std::string& id, const StepInfo& step, Pass&
 
 // What can be said of results without the keys of the settings in force.
 void TakeSurveyor::surveyRecords(Pass& pass, TakeSurvey& survey) const {
-  std::map<std::pair<std::string, std::string>, const Record*> newest;
+  std::map<std::pair<StepId, std::string>, const Record*> newest;
   for (const Digest& key : pass.results) {
     const auto known = records_.find(key);
     if (known == records_.end() || !known->second.whole) continue;
@@ -225,7 +224,7 @@ void TakeSurveyor::surveyRecords(Pass& pass, TakeSurvey& survey) const {
     lane.cells.assign(survey.frames.size(), CellState::Empty);
     lane.notes.resize(survey.frames.size());
     for (const StepInfo& step : info.steps) {
-      const std::string id = info.id + "." + step.id;
+      const StepId id(info.id, step.id);
       for (std::size_t f = 0; f < survey.frames.size(); ++f) {
         const auto made = newest.find({id, step.per_frame ? survey.frames[f] : std::string()});
         if (made == newest.end()) continue;
@@ -245,7 +244,7 @@ void TakeSurveyor::surveyStages(Pass& pass, TakeSurvey& survey) {
     lane.cells.assign(survey.frames.size(), blocked ? CellState::Blocked : CellState::NotNeeded);
     lane.notes.resize(survey.frames.size());
     for (const StepInfo& step : info.steps) {
-      if (!blocked) surveyStep(info.id + "." + step.id, step, pass, survey);
+      if (!blocked) surveyStep(StepId(info.id, step.id), step, pass, survey);
     }
   }
 }

@@ -17,7 +17,7 @@ namespace beam {
 
 // A finished result that a frame can be looked at from (StepShown), with whatever settings it was made.
 struct Leftover {
-  std::string step;
+  StepId step;
   Digest key;
   Digest surface;  // of the result that it lies on, StepShown::surface; zero: none
   bool operator==(const Leftover&) const = default;
@@ -72,7 +72,8 @@ class TakeSurveyor {
 
  private:
   struct Record {
-    std::string step, frame;
+    StepId step;
+    std::string frame;
     std::map<std::string, double> scores;
     bool whole = false;  // every file was there with its size
     bool lead = false;   // made for a take that does not own the frame
@@ -82,17 +83,17 @@ class TakeSurveyor {
   };
   struct Pass;
   using Keys = std::vector<std::optional<Digest>>;  // none: the step is not for the frame
-  const Keys& keysOf(const Project& project, const std::string& step, bool per_frame);
+  const Keys& keysOf(const Project& project, const StepId& step, bool per_frame);
   void readRecords(const Project& project, Pass& pass);
   void keepLeadKeys(const Project& project);
-  void surveyStep(const std::string& id, const StepInfo& step, Pass& pass, TakeSurvey& survey);
+  void surveyStep(const StepId& id, const StepInfo& step, Pass& pass, TakeSurvey& survey);
   void surveyStages(Pass& pass, TakeSurvey& survey);
   void surveyRecords(Pass& pass, TakeSurvey& survey) const;
   void listLeftovers(const Pass& pass, TakeSurvey& survey) const;
 
-  std::string known_for_;             // project and settings that keys_ belong to
-  std::map<std::string, Keys> keys_;  // by step; one a frame, or a single one
-  std::set<Digest> leads_;            // keys of frames as members of takes that do not own them
+  std::string known_for_;        // project and settings that keys_ belong to
+  std::map<StepId, Keys> keys_;  // by step; one a frame, or a single one
+  std::set<Digest> leads_;       // keys of frames as members of takes that do not own them
   std::map<Digest, Record> records_;
 };
 

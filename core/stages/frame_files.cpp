@@ -27,7 +27,7 @@ auto firstWhole(const ResultStore& store, const Leftovers& leftovers, Wanted&& w
     try {
       return read(leftover, *folder);
     } catch (const Error& e) {  // of another version of the program
-      logDebug("{} of other settings is passed over: {}", leftover.step, e.what());
+      logDebug("{} of other settings is passed over: {}", leftover.step.text(), e.what());
     }
   }
   return std::nullopt;
@@ -37,7 +37,7 @@ auto firstWhole(const ResultStore& store, const Leftovers& leftovers, Wanted&& w
 template <class Read>
 auto newestLeftover(const ResultStore& store, const Leftovers& leftovers, Read&& read)
     -> std::optional<decltype(read(leftovers.front(), fs::path()))> {
-  for (const char* step : {kMaterialsStep, kRefineStep, kFitStep}) {
+  for (const StepId& step : {kMaterialsStep, kRefineStep, kFitStep}) {
     const auto wanted = [&](const Leftover& l) { return l.step == step; };
     if (auto found = firstWhole(store, leftovers, wanted, read)) return found;
   }
@@ -53,7 +53,7 @@ GaussianFrame staleFrame(const Leftover& leftover, const fs::path& folder, const
 
 }  // namespace
 
-GaussianFrame readFrame(std::string_view step, const fs::path& folder) {
+GaussianFrame readFrame(const StepId& step, const fs::path& folder) {
   const bool with_materials = step == kMaterialsStep;
   SplatFile file = readSplatPly(folder / (with_materials ? kMaterialsFile : kCloudFile));
   GaussianFrame frame;

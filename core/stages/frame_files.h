@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string_view>
 
 #include "core/pipeline/result_store.h"
 #include "core/pipeline/take_survey.h"
@@ -13,7 +12,7 @@
 namespace beam {
 
 // `folder`: a result of kMaterialsStep, kRefineStep or kFitStep.
-GaussianFrame readFrame(std::string_view step, const std::filesystem::path& folder);
+GaussianFrame readFrame(const StepId& step, const std::filesystem::path& folder);
 FrameJoints readJoints(const std::filesystem::path& folder);  // of kJointsStep
 
 // --- Results of settings that are no longer in force: to look at, never to score or to export. Those that

@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The most finished first.
-constexpr std::array kFrameSteps = {kMaterialsStep, kRefineStep, kFitStep};
+const std::array kFrameSteps = {kMaterialsStep, kRefineStep, kFitStep};
 
 // The results of one frame that an interpolation reads.
 struct SolvedFolders {
@@ -68,7 +68,7 @@ class ProjectSequence final : public GaussianSequence {
         rate_(project.capture().frames_per_second),
         capture_from_world_(project.capture().capture_from_world) {
     for (const StageInfo& stage : project.setup().stages.infos()) {
-      for (const StepInfo& step : stage.steps) steps_.insert(stage.id + "." + step.id);
+      for (const StepInfo& step : stage.steps) steps_.insert(StepId(stage.id, step.id));
     }
   }
 
@@ -178,16 +178,16 @@ class ProjectSequence final : public GaussianSequence {
   }
 
   // A pipeline need not have every step of the house.
-  std::optional<fs::path> result(const char* step, FrameIndex frame) const {
+  std::optional<fs::path> result(const StepId& step, FrameIndex frame) const {
     if (!steps_.contains(step)) return std::nullopt;
     std::lock_guard lock(mutex_);
     return project_.result(step, frame);
   }
-  Digest key(const char* step, FrameIndex frame) const {
+  Digest key(const StepId& step, FrameIndex frame) const {
     std::lock_guard lock(mutex_);
     return project_.key(step, frame);
   }
-  bool isDone(const char* step, FrameIndex frame) const {
+  bool isDone(const StepId& step, FrameIndex frame) const {
     if (!steps_.contains(step)) return false;
     std::lock_guard lock(mutex_);
     return project_.state(step, frame) == StepState::Done;
@@ -203,36 +203,35 @@ class ProjectSequence final : public GaussianSequence {
   // Keys of what there is of the frame itself.
   std::string keysOf(FrameIndex frame) const {
     std::string keys;
-    for (const char* step : {kMaterialsStep, kRefineStep, kFitStep, kMeshStep}) {
+    for (const StepId& step : {kMaterialsStep, kRefineStep, kFitStep, kMeshStep}) {
       if (isDone(step, frame)) keys += key(step, frame).hex();
     }
     return keys;
   }
 
   bool isSolved(FrameIndex frame) const {
-    for (const char* step : kFrameSteps) {
+    for (const StepId& step : kFrameSteps) {
       if (result(step, frame)) return true;
     }
     return false;
   }
   std::optional<GaussianFrame> own(FrameIndex frame) const {
-    for (const char* step : kFrameSteps) {
+    for (const StepId& step : kFrameSteps) {
       if (const auto folder = result(step, frame)) return readFrame(step, *folder);
     }
     return std::nullopt;
   }
 
-  std::optional<SolvedFolders> solvedAt(FrameIndex frame, const char* step) const {
+  std::optional<SolvedFolders> solvedAt(FrameIndex frame, const StepId& step) const {
     const auto skin = result(step, frame), joints = result(kJointsStep, frame);
     if (!skin || !joints) return std::nullopt;
-    return SolvedFolders{*skin, *joints, result(kMaterialsStep, frame),
-                         step == std::string_view(kRefineStep)};
+    return SolvedFolders{*skin, *joints, result(kMaterialsStep, frame), step == kRefineStep};
   }
   // The frame has no result of its own and lies between two that are solved, both as far as both are.
   std::optional<SolvedPair> solvedPair(FrameIndex frame) const {
     const std::optional<Between> between = betweenOf(frame);
     if (!between || isSolved(frame)) return std::nullopt;
-    for (const char* step : {kRefineStep, kFitStep}) {
+    for (const StepId& step : {kRefineStep, kFitStep}) {
       auto a = solvedAt(between->before, step), b = solvedAt(between->after, step);
       if (!a || !b) continue;
       if (!isCarried(b->skin)) return std::nullopt;
@@ -251,7 +250,7 @@ class ProjectSequence final : public GaussianSequence {
   const std::vector<FrameLabel> labels_;
   const double rate_;
   const Similarity3 capture_from_world_;
-  std::set<std::string, std::less<>> steps_;
+  std::set<StepId> steps_;
   mutable std::mutex mutex_;  // over what project_ remembers of keys
 };
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Full ids of the steps that ship with the house. Never renamed: results are found by them.
+// The steps that ship with the house.
 #pragma once
+
+#include "core/pipeline/step_id.h"
 
 namespace beam {
 
-inline constexpr const char* kImportStep = "capture.import";
-inline constexpr const char* kScreenStep = "capture.screen";
-inline constexpr const char* kLightStep = "light.import";
-inline constexpr const char* kJointsStep = "track.joints";
-inline constexpr const char* kSeedStep = "surface.seed";
-inline constexpr const char* kFitStep = "surface.fit";
-inline constexpr const char* kRefineStep = "surface.refine";
-inline constexpr const char* kScoreStep = "surface.score";
-inline constexpr const char* kMeshStep = "surface.mesh";
-inline constexpr const char* kBakeStep = "materials.bake";
-inline constexpr const char* kMaterialsStep = "materials.fit";
+inline const StepId kImportStep("capture.import");
+inline const StepId kScreenStep("capture.screen");
+inline const StepId kLightStep("light.import");
+inline const StepId kJointsStep("track.joints");
+inline const StepId kSeedStep("surface.seed");
+inline const StepId kFitStep("surface.fit");
+inline const StepId kRefineStep("surface.refine");
+inline const StepId kScoreStep("surface.score");
+inline const StepId kMeshStep("surface.mesh");
+inline const StepId kBakeStep("materials.bake");
+inline const StepId kMaterialsStep("materials.fit");
 
 }  // namespace beam

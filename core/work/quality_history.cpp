@@ -25,10 +25,10 @@ class Collector {
     for (const StageInfo& stage : project_.setup().stages.infos()) {
       if (!project_.blockedReason(stage.id).empty()) continue;
       for (const StepInfo& step : stage.steps) {
-        (step.per_frame ? frame_steps_ : project_steps_).push_back(stage.id + "." + step.id);
+        (step.per_frame ? frame_steps_ : project_steps_).emplace_back(stage.id, step.id);
       }
     }
-    for (const std::string& step : project_steps_) {
+    for (const StepId& step : project_steps_) {
       if (const auto record = project_.record(step, FrameIndex{})) count(*record);
     }
     for (std::size_t f = 0; f < project_.capture().frames.size(); ++f) {
@@ -57,11 +57,12 @@ class Collector {
 
   FrameQuality frame(FrameIndex index) {
     FrameQuality q{index, project_.capture().frames[static_cast<std::size_t>(index.value)], {}, {}, {}, {}};
-    for (const std::string& step : frame_steps_) {
+    for (const StepId& step : frame_steps_) {
       if (const auto record = project_.record(step, index)) {
         count(*record);
         q.seconds[step] = record->seconds;
-        for (const auto& [name, value] : record->scores) q.scores[fmt::format("{}.{}", step, name)] = value;
+        for (const auto& [name, value] : record->scores)
+          q.scores[fmt::format("{}.{}", step.text(), name)] = value;
       } else if (std::string failure = project_.failureOf(step, index); !failure.empty()) {
         q.failures[step] = std::move(failure);
       }
@@ -114,7 +115,7 @@ class Collector {
   const Project& project_;
   const Progress& progress_;
   QualityHistory history_;
-  std::vector<std::string> project_steps_, frame_steps_;
+  std::vector<StepId> project_steps_, frame_steps_;
   std::set<std::string> told_;
 };
 

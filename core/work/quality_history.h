@@ -17,10 +17,10 @@ namespace beam {
 struct FrameQuality {
   FrameIndex frame;
   std::string name;
-  std::map<std::string, double> scores;         // by full name: "surface.score.psnr_train"
-  std::map<std::string, double> seconds;        // by step
-  std::map<std::string, std::string> failures;  // by step
-  std::vector<ViewScore> views;                 // empty: not scored
+  std::map<std::string, double> scores;  // by full name: "surface.score.psnr_train"
+  std::map<StepId, double> seconds;
+  std::map<StepId, std::string> failures;
+  std::vector<ViewScore> views;  // empty: not scored
 };
 
 struct QualityHistory {

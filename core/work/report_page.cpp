@@ -165,7 +165,7 @@ class PageWriter {
     for (const FrameQuality& f : h_.frames) {
       for (const auto& [step, message] : f.failures) {
         ++count;
-        list += fmt::format("<li>Frame {}, {}: {}</li>\n", escapedHtml(f.name), escapedHtml(step),
+        list += fmt::format("<li>Frame {}, {}: {}</li>\n", escapedHtml(f.name), escapedHtml(step.text()),
                             escapedHtml(message));
       }
     }
@@ -376,14 +376,14 @@ class PageWriter {
     for (const auto& [key, value] : page_.settings)
       out_ += "<tr>" + cell(key, "name code") + cell(value) + "</tr>\n";
     out_ += "</tbody></table>\n";
-    std::map<std::string, std::pair<double, std::size_t>> steps;
+    std::map<StepId, std::pair<double, std::size_t>> steps;
     for (const FrameQuality& f : h_.frames) {
       for (const auto& [step, seconds] : f.seconds) steps[step].first += seconds, ++steps[step].second;
     }
     if (steps.empty()) return;
     out_ += "<table>" + head({"Step", "Frames", "Seconds a frame", "Together"}) + "<tbody>";
     for (const auto& [step, sum] : steps) {
-      out_ += "<tr>" + cell(step, "name code") + cell(std::to_string(sum.second), "n") +
+      out_ += "<tr>" + cell(step.text(), "name code") + cell(std::to_string(sum.second), "n") +
               number(sum.first / static_cast<double>(sum.second), 2) + cell(durationText(sum.first), "n") +
               "</tr>\n";
     }

@@ -328,7 +328,7 @@ TEST(RunBar, RunsAndStopsByTheCommandsBehindItsButtons) {
   b.bar.showStopping("after this step");
   EXPECT_TRUE(b.bar.text().contains("after this step"));
   StepProgress progress;
-  progress.ref = {"surface.fit", FrameIndex{0}, "000000"};
+  progress.ref = {StepId("surface.fit"), FrameIndex{0}, "000000"};
   b.bar.showProgress(progress);
   EXPECT_TRUE(b.bar.text().contains("after this step")) << "progress does not hide that it stops";
   cancel->click();
@@ -342,7 +342,7 @@ TEST(RunBar, NamesStepsByTheirTitlesAndGroupsThousands) {
   run.setStages(stages());
   run.showStarted("Starting");
   StepProgress progress;
-  progress.ref = {"surface.fit", FrameIndex{0}, "000000"};
+  progress.ref = {StepId("surface.fit"), FrameIndex{0}, "000000"};
   progress.report = {0.5, "", 1234, 5000};
   progress.job_fraction = 0.5;
   progress.seconds_elapsed = 100;

@@ -28,7 +28,7 @@ TEST(CopyProject, HasTheSameResultsUnderAnIdOfItsOwn) {
   EXPECT_EQ(to.captureFolder(), house.root() / "capture");
   EXPECT_EQ(productsOf(to.folder()), productsOf(from.folder()));
   for (const int f : {0, 1, 2}) EXPECT_EQ(to.stageState("materials", FrameIndex{f}), StepState::Done);
-  EXPECT_TRUE(to.result("surface.fit", FrameIndex{1})) << "every byte verified";
+  EXPECT_TRUE(to.result("surface.fit"_step, FrameIndex{1})) << "every byte verified";
   house.hooks.computed.clear();
   house.finish(to);
   EXPECT_TRUE(house.hooks.computed.empty());
@@ -37,18 +37,18 @@ TEST(CopyProject, HasTheSameResultsUnderAnIdOfItsOwn) {
 TEST(CopyProject, KeepsTheAgeOfResultsAndWhyAFrameFailed) {
   FakeHouse house;
   const Project from = house.newProject();
-  house.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.fit" && c.frame.value == 2) throw Error(Error::Kind::Data, "too dark");
+  house.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.fit"_step && c.frame.value == 2) throw Error(Error::Kind::Data, "too dark");
   };
   house.finish(from);
-  const Digest key = from.key("surface.fit", FrameIndex{1});
+  const Digest key = from.key("surface.fit"_step, FrameIndex{1});
   const auto age = fs::last_write_time(from.store().folderOf(key) / "result.json") - std::chrono::hours(5);
   fs::last_write_time(from.store().folderOf(key) / "result.json", age);
   Progress progress;
   copyProject(from, house.root() / "q.beam", true, progress);
   const Project to = house.open("q.beam");
   EXPECT_EQ(fs::last_write_time(to.store().folderOf(key) / "result.json"), age);
-  EXPECT_EQ(to.failureOf("surface.fit", FrameIndex{2}), "too dark");
+  EXPECT_EQ(to.failureOf("surface.fit"_step, FrameIndex{2}), "too dark");
 }
 
 TEST(CopyProject, IsNotMadeInTheCapture) {
@@ -84,7 +84,7 @@ TEST(CopyProject, LeavesAHalfBuiltResultBehind) {
   FakeHouse house;
   const Project from = house.newProject();
   house.finish(from);
-  fs::remove(*from.result("materials.bake", FrameIndex{0}) / "data.txt");
+  fs::remove(*from.result("materials.bake"_step, FrameIndex{0}) / "data.txt");
   fs::create_directories(from.folder() / "results" / ".00000000000000000000000000000000.1.tmp");
   Progress progress;
   copyProject(from, house.root() / "q.beam", true, progress);

@@ -20,6 +20,7 @@
 #include "core/pipeline/project.h"
 #include "core/pipeline/runner.h"
 #include "core/render/device.h"
+#include "tests/support/step_literal.h"
 #include "tests/support/temp_dir.h"
 
 namespace beam::testing {
@@ -73,11 +74,11 @@ inline void describe(Fields& f, FakeOptions& o) {
   });
 }
 
-// Called at the start of every step with its full id and frame; may throw, sleep, or look.
+// Called at the start of every step with its frame; may throw, sleep, or look.
 struct FakeHooks {
-  std::function<void(const std::string& step, StepContext&)> at_step;
-  std::map<std::string, int> computed;  // by step
-  std::mutex mutex;                     // over `computed`, for tests with two runners
+  std::function<void(const StepId& step, StepContext&)> at_step;
+  std::map<StepId, int> computed;
+  std::mutex mutex;  // over `computed`, for tests with two runners
 };
 
 class FakeStage final : public StageOf<FakeOptions> {
@@ -85,16 +86,17 @@ class FakeStage final : public StageOf<FakeOptions> {
   FakeStage(StageInfo info, FakeHooks& hooks) : info_(std::move(info)), hooks_(hooks) {}
   const StageInfo& info() const override { return info_; }
   void run(std::string_view step, StepContext& c) const override {
-    const std::string id = info_.id + "." + std::string(step);
+    const StepId id(info_.id, step);
     if (hooks_.at_step) hooks_.at_step(id, c);
-    std::string text = id + "\n";
+    std::string text = id.text() + "\n";
     for (const auto& [input, folder] : c.inputs) text += readTextFile(folder / "data.txt");
     for (const auto& [earlier, folder] : c.previous) {
       const std::string before = readTextFile(folder / "data.txt");
-      text += "before " + earlier + " " + digestOf(before).hex() + "\n";
+      text += "before " + earlier.text() + " " + digestOf(before).hex() + "\n";
     }
     text += "iterations " + std::to_string(options_.iterations) + "\n";
-    if (id == "surface.seed") text += std::to_string(c.capture.source->photo({}, c.frame).pixels[0].x) + "\n";
+    if (id == "surface.seed"_step)
+      text += std::to_string(c.capture.source->photo({}, c.frame).pixels[0].x) + "\n";
     c.progress.expect(options_.iterations);
     for (int i = 0; i < options_.iterations; ++i) c.progress.step();
     std::filesystem::create_directory(c.folder / "maps");
@@ -125,48 +127,49 @@ inline std::vector<StageInfo> fakeStages() {
           {"surface",
            "Surface",
            "",
-           {{.id = "seed", .title = "Seed", .reads = {Reads::Pictures}, .inputs = {"capture.import"}},
+           {{.id = "seed", .title = "Seed", .reads = {Reads::Pictures}, .inputs = {"capture.import"_step}},
             {.id = "fit",
              .title = "Fit",
              .reads = {Reads::Pictures},
-             .inputs = {"surface.seed"},
+             .inputs = {"surface.seed"_step},
              .shown = {.frame = true}},
             {.id = "refine",
              .title = "Refine",
-             .inputs = {"surface.fit"},
-             .shown = {.frame = true, .surface = "surface.refine"}}}},
+             .inputs = {"surface.fit"_step},
+             .shown = {.frame = true, .surface = "surface.refine"_step}}}},
           {"materials",
            "Materials",
            "",
-           {{.id = "bake", .title = "Bake", .inputs = {"light.import", "surface.refine"}}}}};
+           {{.id = "bake", .title = "Bake", .inputs = {"light.import"_step, "surface.refine"_step}}}}};
 }
 
 // With takes: the first frame of each is fitted, the others follow the frame before.
 inline std::vector<StageInfo> fakeStagesWithTakes() {
-  return {{"capture", "Capture", "", {{.id = "import", .title = "Import", .per_frame = false}}},
-          {"track",
-           "Track",
-           "",
-           {{.id = "pose",
-             .title = "Pose",
-             .reads = {Reads::Pictures},
-             .inputs = {"capture.import"},
-             .frames = Frames::InTakes,
-             .later = {.previous = {"track.pose"}}}}},
-          {"surface",
-           "Surface",
-           "",
-           {{.id = "fit",
-             .title = "Fit",
-             .reads = {Reads::Pictures},
-             .inputs = {"capture.import"},
-             .frames = Frames::FirstOfTake},
-            {.id = "refine",
-             .title = "Refine",
-             .reads = {Reads::Pictures},
-             .inputs = {"surface.fit"},
-             .later = {.inputs = {"track.pose"}, .previous = {"surface.refine"}}}}},
-          {"materials", "Materials", "", {{.id = "bake", .title = "Bake", .inputs = {"surface.refine"}}}}};
+  return {
+      {"capture", "Capture", "", {{.id = "import", .title = "Import", .per_frame = false}}},
+      {"track",
+       "Track",
+       "",
+       {{.id = "pose",
+         .title = "Pose",
+         .reads = {Reads::Pictures},
+         .inputs = {"capture.import"_step},
+         .frames = Frames::InTakes,
+         .later = {.previous = {"track.pose"_step}}}}},
+      {"surface",
+       "Surface",
+       "",
+       {{.id = "fit",
+         .title = "Fit",
+         .reads = {Reads::Pictures},
+         .inputs = {"capture.import"_step},
+         .frames = Frames::FirstOfTake},
+        {.id = "refine",
+         .title = "Refine",
+         .reads = {Reads::Pictures},
+         .inputs = {"surface.fit"_step},
+         .later = {.inputs = {"track.pose"_step}, .previous = {"surface.refine"_step}}}}},
+      {"materials", "Materials", "", {{.id = "bake", .title = "Bake", .inputs = {"surface.refine"_step}}}}};
 }
 
 // A folder with a capture, a panorama file, presets and room for projects; and what runs them.

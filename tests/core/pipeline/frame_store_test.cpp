@@ -292,8 +292,8 @@ class RunWithPictures : public FrameStoreTest {
       imported.set.source = source_;
       return imported;
     };
-    house_.hooks.at_step = [this](const std::string& step, StepContext& c) {
-      const bool reads = step == "surface.seed" || step == "surface.fit";
+    house_.hooks.at_step = [this](const StepId& step, StepContext& c) {
+      const bool reads = step == "surface.seed"_step || step == "surface.fit"_step;
       EXPECT_EQ(c.frames != nullptr, reads) << step;
       if (reads) {
         EXPECT_EQ(greysOf(*c.frames, c.frame.value).size(), 3u);
@@ -309,12 +309,12 @@ class RunWithPictures : public FrameStoreTest {
   }
 
   FakeHouse house_;
-  std::function<void(const std::string& step, int frame)> at_step_;
+  std::function<void(const StepId& step, int frame)> at_step_;
 };
 
 TEST_F(RunWithPictures, DecodesEachFrameOnceAndAheadOfItsTurn) {
-  at_step_ = [](const std::string& step, int frame) {
-    if (step == "surface.refine" && frame < 2) source_->awaitDecoded(frame + 1, 3);
+  at_step_ = [](const StepId& step, int frame) {
+    if (step == "surface.refine"_step && frame < 2) source_->awaitDecoded(frame + 1, 3);
   };
   EXPECT_EQ(house_.finish(house_.newProject()).outcome, JobOutcome::Done);
   const Counts counts = decoded();
@@ -331,8 +331,8 @@ TEST_F(RunWithPictures, DecodesNothingOfAFrameThatIsDone) {
 
 TEST_F(RunWithPictures, AStepThatFindsNoMemoryIsTriedAgainWithoutKeptPictures) {
   int tries = 0;
-  at_step_ = [&](const std::string& step, int frame) {
-    if (step == "surface.fit" && frame == 1 && ++tries == 1) throw std::bad_alloc();
+  at_step_ = [&](const StepId& step, int frame) {
+    if (step == "surface.fit"_step && frame == 1 && ++tries == 1) throw std::bad_alloc();
   };
   const JobFinished finished = house_.finish(house_.newProject());
   EXPECT_EQ(finished.outcome, JobOutcome::Done);

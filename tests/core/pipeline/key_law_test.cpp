@@ -6,20 +6,20 @@
 namespace beam::testing {
 namespace {
 
-using Keys = std::map<std::string, Digest>;
+using Keys = std::map<StepId, Digest>;
 
 Keys keysOf(const Project& project, FrameIndex frame = FrameIndex{0}) {
   Keys keys;
-  for (const char* step : {"capture.import", "light.import", "surface.seed", "surface.fit", "surface.refine",
-                           "materials.bake"}) {
+  for (const StepId& step : {"capture.import"_step, "light.import"_step, "surface.seed"_step,
+                             "surface.fit"_step, "surface.refine"_step, "materials.bake"_step}) {
     keys[step] = project.key(step, frame);
   }
   return keys;
 }
 
 // Steps whose keys differ.
-std::vector<std::string> changedSteps(const Keys& a, const Keys& b) {
-  std::vector<std::string> changed;
+std::vector<StepId> changedSteps(const Keys& a, const Keys& b) {
+  std::vector<StepId> changed;
   for (const auto& [step, key] : a) {
     if (key != b.at(step)) changed.push_back(step);
   }
@@ -31,7 +31,7 @@ class KeyLaw : public ::testing::Test {
   FakeHouse house_;
   Project project_ = house_.newProject();
   Keys before_ = keysOf(project_);
-  std::vector<std::string> changedBy(std::string_view key, const FieldValue& value) {
+  std::vector<StepId> changedBy(std::string_view key, const FieldValue& value) {
     project_.set(key, value);
     return changedSteps(before_, keysOf(project_));
   }
@@ -46,16 +46,18 @@ TEST_F(KeyLaw, AValueEqualToTheDefaultVoidsNothing) {
 
 TEST_F(KeyLaw, AResultFieldVoidsItsStageAndWhatFollows) {
   EXPECT_EQ(changedBy("surface.iterations", 20),
-            (std::vector<std::string>{"materials.bake", "surface.fit", "surface.refine", "surface.seed"}));
+            (std::vector<StepId>{"materials.bake"_step, "surface.fit"_step, "surface.refine"_step,
+                                 "surface.seed"_step}));
 }
 
 TEST_F(KeyLaw, AFieldOfAStepsGroupLeavesEarlierStepsAlone) {
   EXPECT_EQ(changedBy("surface.refine.normal_weight", 0.1),
-            (std::vector<std::string>{"materials.bake", "surface.refine"}));
+            (std::vector<StepId>{"materials.bake"_step, "surface.refine"_step}));
 }
 
 TEST_F(KeyLaw, AFieldOfAnEarlierStageVoidsOnlyWhatReadsIt) {
-  EXPECT_EQ(changedBy("light.iterations", 20), (std::vector<std::string>{"light.import", "materials.bake"}));
+  EXPECT_EQ(changedBy("light.iterations", 20),
+            (std::vector<StepId>{"light.import"_step, "materials.bake"_step}));
 }
 
 TEST_F(KeyLaw, GoingBackFindsTheOldKey) {
@@ -75,20 +77,22 @@ TEST_F(KeyLaw, APictureVoidsItsOwnFrameOnly) {
   const Keys other_before = keysOf(project_, FrameIndex{1});
   house_.frames->changed[{2, 0}] = 99;
   EXPECT_EQ(changedSteps(before_, keysOf(project_)),
-            (std::vector<std::string>{"materials.bake", "surface.fit", "surface.refine", "surface.seed"}));
+            (std::vector<StepId>{"materials.bake"_step, "surface.fit"_step, "surface.refine"_step,
+                                 "surface.seed"_step}));
   EXPECT_EQ(keysOf(project_, FrameIndex{1}), other_before);
 }
 
 TEST_F(KeyLaw, WhereMasksAreVoidsWhatReadsPictures) {
   house_.masks = MaskKind::Alpha;
   EXPECT_EQ(changedSteps(before_, keysOf(house_.open())),
-            (std::vector<std::string>{"materials.bake", "surface.fit", "surface.refine", "surface.seed"}));
+            (std::vector<StepId>{"materials.bake"_step, "surface.fit"_step, "surface.refine"_step,
+                                 "surface.seed"_step}));
 }
 
 TEST_F(KeyLaw, ThePanoramaVoidsMaterialsOnly) {
   std::ofstream(house_.root() / "light.hdr") << "other light";
   EXPECT_EQ(changedSteps(before_, keysOf(house_.open())),
-            (std::vector<std::string>{"light.import", "materials.bake"}));
+            (std::vector<StepId>{"light.import"_step, "materials.bake"_step}));
 }
 
 TEST_F(KeyLaw, HeldOutCamerasVoidSurface) {
@@ -112,12 +116,29 @@ TEST_F(KeyLaw, NamesPathsAndFurtherFramesEnterNoKey) {
   EXPECT_EQ(keysOf(moved), before_);
 }
 
+// A byte more and no result of before is found again.
+TEST(KeyText, IsWhatItAlwaysWas) {
+  const Digest pictures = digestOf("p"), seed = digestOf("s"), before = digestOf("b"), track = digestOf("t");
+  const KeyIngredients made{"surface.fit"_step,
+                            2,
+                            {{"surface.cap", "9"}},
+                            {{"pictures", pictures}},
+                            {{"surface.seed"_step, seed}, {"capture.import"_step, track}},
+                            {{"surface.refine"_step, before}},
+                            true};
+  EXPECT_EQ(canonicalText(made),
+            "step surface.fit\nversion 2\nlater\nparameter surface.cap 1:9\ninput pictures " +
+                pictures.hex() + "\nresult capture.import " + track.hex() +
+                "\nresult previous surface.refine " + before.hex() + "\nresult surface.seed " + seed.hex() +
+                "\n");
+}
+
 TEST(KeyText, ListsThatReadAlikeDiffer) {
-  KeyIngredients a{"s.t", 1, {{"x", "1\nparameter y 1:2"}}, {}, {}};
-  KeyIngredients b{"s.t", 1, {{"x", "1"}, {"y", "2"}}, {}, {}};
+  KeyIngredients a{"s.t"_step, 1, {{"x", "1\nparameter y 1:2"}}, {}, {}};
+  KeyIngredients b{"s.t"_step, 1, {{"x", "1"}, {"y", "2"}}, {}, {}};
   EXPECT_NE(keyOf(a), keyOf(b));
   b.version = 2;
-  EXPECT_NE(keyOf(b), keyOf({"s.t", 1, {{"x", "1"}, {"y", "2"}}, {}, {}}));
+  EXPECT_NE(keyOf(b), keyOf({"s.t"_step, 1, {{"x", "1"}, {"y", "2"}}, {}, {}}));
 }
 
 }  // namespace

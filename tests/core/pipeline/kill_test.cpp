@@ -81,7 +81,7 @@ struct Pipe {
 
 TEST(Kill, AtAnyMomentLosesNothingThatWasAcknowledged) {
   FakeHouse house;
-  house.hooks.at_step = [](const std::string&, StepContext& c) {
+  house.hooks.at_step = [](const StepId&, StepContext& c) {
     std::ofstream(c.folder / "early.txt") << "early";  // so that a kill finds something half done
     std::this_thread::sleep_for(500us);
   };
@@ -126,7 +126,7 @@ TEST(Kill, AtAnyMomentLosesNothingThatWasAcknowledged) {
 
 TEST(Writers, ThatRunAtOnceComputeEachStepOnceAndAgree) {
   FakeHouse house;
-  house.hooks.at_step = [](const std::string&, StepContext&) { std::this_thread::sleep_for(2ms); };
+  house.hooks.at_step = [](const StepId&, StepContext&) { std::this_thread::sleep_for(2ms); };
   house.newProject("calm.beam");
   house.finish(house.open("calm.beam"));
   house.newProject();
@@ -145,9 +145,9 @@ TEST(Writers, ThatRunAtOnceComputeEachStepOnceAndAgree) {
 TEST(Writers, AStepThatSomebodyElseComputesShowsAsRunning) {
   FakeHouse house;
   const Project p = house.newProject();
-  const auto lease = p.store().tryLease(p.key("surface.fit", FrameIndex{1}));
-  EXPECT_EQ(p.state("surface.fit", FrameIndex{1}), StepState::Running);
-  EXPECT_EQ(p.state("surface.fit", FrameIndex{0}), StepState::Pending);
+  const auto lease = p.store().tryLease(p.key("surface.fit"_step, FrameIndex{1}));
+  EXPECT_EQ(p.state("surface.fit"_step, FrameIndex{1}), StepState::Running);
+  EXPECT_EQ(p.state("surface.fit"_step, FrameIndex{0}), StepState::Pending);
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ class LostCapture : public ::testing::Test {
  protected:
   LostCapture() {
     house.frame_names = {"f8", "f9", "f10"};
-    house.hooks.at_step = [](const std::string& step, StepContext& c) {
-      if (step == "capture.import") std::ofstream(c.folder / kCamerasFile) << calibrationText(c.capture);
-      if (step == "surface.fit") c.scores["loss"] = c.frame.value;
+    house.hooks.at_step = [](const StepId& step, StepContext& c) {
+      if (step == "capture.import"_step) std::ofstream(c.folder / kCamerasFile) << calibrationText(c.capture);
+      if (step == "surface.fit"_step) c.scores["loss"] = c.frame.value;
     };
     EXPECT_EQ(house.finish(house.newProject()).outcome, JobOutcome::Done);
     std::filesystem::rename(house.root() / "capture", house.root() / "elsewhere");
@@ -69,9 +69,9 @@ TEST_F(LostCapture, IsSurveyedAsStaleWithCurvesAndStamps) {
 TEST_F(LostCapture, MakesNoKeysAndRunsNothing) {
   const Project project = lost();
   const auto before = everythingIn(house.root());
-  EXPECT_THAT(dataErrorOf([&] { project.key("surface.fit", FrameIndex{0}); }), HasSubstr("is gone"));
-  EXPECT_FALSE(project.result("surface.fit", FrameIndex{0}));
-  EXPECT_EQ(project.state("surface.fit", FrameIndex{0}), StepState::Blocked);
+  EXPECT_THAT(dataErrorOf([&] { project.key("surface.fit"_step, FrameIndex{0}); }), HasSubstr("is gone"));
+  EXPECT_FALSE(project.result("surface.fit"_step, FrameIndex{0}));
+  EXPECT_EQ(project.state("surface.fit"_step, FrameIndex{0}), StepState::Blocked);
   house.hooks.computed.clear();
   const JobFinished finished = house.finish(project);
   EXPECT_EQ(finished.outcome, JobOutcome::Failed);

@@ -149,11 +149,11 @@ TEST_F(ProjectLooks, ChangeNoKeyAndNoState) {
   house.finish(project);
   TakeSurveyor surveyor;
   surveyor.survey(project);
-  const Digest key = project.key("materials.bake", FrameIndex{1});
+  const Digest key = project.key("materials.bake"_step, FrameIndex{1});
   // Whoever worked out keys anew would see it.
   house.frames->changed[{0, 1}] = 200;
   project.setLook(randomLook(1));
-  EXPECT_EQ(project.key("materials.bake", FrameIndex{1}), key);
+  EXPECT_EQ(project.key("materials.bake"_step, FrameIndex{1}), key);
   const TakeSurvey survey = surveyor.survey(project);
   for (const SurveyLane& lane : survey.lanes) {
     for (const CellState cell : lane.cells) EXPECT_EQ(cell, CellState::Done) << lane.title;

@@ -73,7 +73,7 @@ TEST(ProjectWorld, IsFoundOnceWhenAProjectIsMadeAndKept) {
   EXPECT_EQ(again.imported().placement, made.imported().placement) << "to the last bit";
   EXPECT_EQ(again.document().world, made.imported().placement);
   EXPECT_EQ(again.capture().capture_from_world, made.capture().capture_from_world);
-  EXPECT_EQ(again.key("surface.fit", FrameIndex{0}), made.key("surface.fit", FrameIndex{0}));
+  EXPECT_EQ(again.key("surface.fit"_step, FrameIndex{0}), made.key("surface.fit"_step, FrameIndex{0}));
   made.setUp(UpAxis::PlusZ);
   made.capture();
   EXPECT_EQ(found, 1);
@@ -92,7 +92,7 @@ TEST(ProjectWorld, AProjectOfBeforeOnlyTurnsItsCapture) {
   again.save();
   EXPECT_EQ(found, 0);
   EXPECT_EQ(readTextFile(before.folder() / "project.json"), toJson(document)) << "there is nothing to do";
-  EXPECT_EQ(again.key("surface.fit", FrameIndex{0}), before.key("surface.fit", FrameIndex{0}));
+  EXPECT_EQ(again.key("surface.fit"_step, FrameIndex{0}), before.key("surface.fit"_step, FrameIndex{0}));
 }
 
 TEST(ProjectWorld, AUnitThatIsGivenHoldsAndIsAskedForOnce) {

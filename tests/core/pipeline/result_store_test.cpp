@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "tests/support/step_literal.h"
 #include "tests/support/temp_dir.h"
 
 namespace beam::testing {
@@ -164,8 +165,13 @@ TEST_F(Store, OneLeaseAKey) {
 TEST_F(Store, RecordsSurviveTheTripThroughJson) {
   ResultRecord r;
   r.key = key_;
-  r.ingredients = {
-      "surface.fit", 3, {{"a.b", "0.1"}}, {{"pictures", digestOf("p")}}, {{"s.t", digestOf("u")}}};
+  r.ingredients = {"surface.fit"_step,
+                   3,
+                   {{"a.b", "0.1"}},
+                   {{"pictures", digestOf("p")}},
+                   {{"s.t"_step, digestOf("u")}},
+                   {{"s.v"_step, digestOf("v")}},
+                   true};
   r.files["x.ply"] = {12, digestOf("x")};
   r.frame = "000001";
   r.warnings = {"a \"quoted\" warning\n"};
@@ -173,6 +179,7 @@ TEST_F(Store, RecordsSurviveTheTripThroughJson) {
   const ResultRecord back = parseResultRecord(toJson(r));
   EXPECT_EQ(toJson(back), toJson(r));
   EXPECT_EQ(keyOf(back.ingredients), keyOf(r.ingredients));
+  EXPECT_EQ(back.ingredients.previous, r.ingredients.previous);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace beam::testing {
 namespace {
 
 StepKind kind(const std::string& step, bool later = false, const std::string& settings = {}) {
-  return {step, later, digestOf(settings)};
+  return {StepId(step), later, digestOf(settings)};
 }
 
 TEST(RunEstimate, OfAFreshProjectIsEverythingAndUnmeasured) {
@@ -75,8 +75,8 @@ TEST(RunEstimate, AddsUpWhatWasMeasured) {
   FakeHouse house;
   const Project project = house.newProject();
   StepTimes times;
-  for (const char* step : {"capture.import", "light.import", "surface.seed", "surface.fit", "surface.refine",
-                           "materials.bake"}) {
+  for (const StepId& step : {"capture.import"_step, "light.import"_step, "surface.seed"_step,
+                             "surface.fit"_step, "surface.refine"_step, "materials.bake"_step}) {
     times.add(kindOf(project.ingredients(step, FrameIndex{0})), {1}, 10);
   }
   const RunEstimate e = estimateRun(project, {}, times);
@@ -101,7 +101,7 @@ std::vector<StageInfo> stagesWithWork() {
 TEST(RunEstimate, OfTenTimesTheWorkIsAboutTenTimesAsLong) {
   FakeHouse house(stagesWithWork());
   const Project small = house.newProject("small.beam");
-  house.hooks.at_step = [](const std::string&, StepContext&) {
+  house.hooks.at_step = [](const StepId&, StepContext&) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   };
   house.finish(small);
@@ -188,9 +188,9 @@ TEST(StepTimes, AreReadFromRecordsAndKeptAsText) {
   const Project project = house.newProject();
   house.finish(project);
   const StepTimes times = readStepTimes(project);
-  EXPECT_TRUE(times.knows({"surface.refine", false, settingsDigest({})}));
-  EXPECT_TRUE(times.knows({"surface.refine", true, settingsDigest({})}));
-  EXPECT_FALSE(times.knows({"surface.fit", true, settingsDigest({})}));
+  EXPECT_TRUE(times.knows({"surface.refine"_step, false, settingsDigest({})}));
+  EXPECT_TRUE(times.knows({"surface.refine"_step, true, settingsDigest({})}));
+  EXPECT_FALSE(times.knows({"surface.fit"_step, true, settingsDigest({})}));
   EXPECT_EQ(toJson(parseStepTimes(toJson(times))), toJson(times));
   for (const char* broken : {"", "{}}", "[1]", "[{\"step\": 1}]"}) {
     EXPECT_THROW(parseStepTimes(broken), Error) << broken;

@@ -51,19 +51,21 @@ TEST(Run, AChangedGroupFieldComputesOnlyFromThereOn) {
   house.hooks.computed.clear();
   p.set("surface.refine.normal_weight", 0.5);
   house.finish(p);
-  EXPECT_EQ(house.hooks.computed, (std::map<std::string, int>{{"materials.bake", 3}, {"surface.refine", 3}}));
+  EXPECT_EQ(house.hooks.computed,
+            (std::map<StepId, int>{{"materials.bake"_step, 3}, {"surface.refine"_step, 3}}));
 }
 
 TEST(Run, TakesOnlyTheFramesAndStagesItIsAskedFor) {
   FakeHouse house;
   house.finish(house.newProject(), {{FrameIndex{1}}, "", "surface"});
-  EXPECT_EQ(house.hooks.computed.count("materials.bake"), 0u);
-  EXPECT_EQ(house.hooks.computed["surface.refine"], 1);
+  EXPECT_EQ(house.hooks.computed.count("materials.bake"_step), 0u);
+  EXPECT_EQ(house.hooks.computed["surface.refine"_step], 1);
   house.hooks.computed.clear();
   house.finish(house.newProject("q.beam"), {{FrameIndex{2}}, "surface", ""});
-  EXPECT_EQ(house.hooks.computed,
-            (std::map<std::string, int>{
-                {"capture.import", 1}, {"surface.fit", 1}, {"surface.refine", 1}, {"surface.seed", 1}}));
+  EXPECT_EQ(house.hooks.computed, (std::map<StepId, int>{{"capture.import"_step, 1},
+                                                         {"surface.fit"_step, 1},
+                                                         {"surface.refine"_step, 1},
+                                                         {"surface.seed"_step, 1}}));
   EXPECT_EQ(house.finish(house.open(), {{}, "", "nonsense"}).kind, Error::Kind::Usage);
 }
 
@@ -88,41 +90,41 @@ TEST(Run, WithoutAPanoramaItStopsAfterSurfaceAndSaysWhatIsNeeded) {
   house.has_panorama = false;
   const JobFinished finished = house.finish(house.newProject());
   EXPECT_EQ(finished.outcome, JobOutcome::Done);
-  EXPECT_EQ(house.hooks.computed["surface.refine"], 3);
-  EXPECT_EQ(house.hooks.computed.count("materials.bake"), 0u);
+  EXPECT_EQ(house.hooks.computed["surface.refine"_step], 3);
+  EXPECT_EQ(house.hooks.computed.count("materials.bake"_step), 0u);
   ASSERT_FALSE(finished.notes.empty());
   EXPECT_THAT(finished.notes.back(), HasSubstr("panorama"));
-  EXPECT_EQ(house.open().state("materials.bake", {}), StepState::Blocked);
+  EXPECT_EQ(house.open().state("materials.bake"_step, {}), StepState::Blocked);
   EXPECT_EQ(house.finish(house.open(), {{}, "materials", ""}).kind, Error::Kind::Data);
 }
 
 TEST(Run, OneBadFrameDoesNotStopTheOthers) {
   FakeHouse house;
-  house.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.fit" && c.frame.value == 1)
+  house.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.fit"_step && c.frame.value == 1)
       throw Error(Error::Kind::Data, "picture \"x.png\" is torn");
   };
   const JobFinished finished = house.finish(house.newProject());
   EXPECT_EQ(finished.outcome, JobOutcome::DoneWithFailures);
   ASSERT_EQ(finished.failed.size(), 1u);
   EXPECT_EQ(finished.failed[0].ref.frame_name, "001");
-  EXPECT_EQ(house.hooks.computed["materials.bake"], 2);
+  EXPECT_EQ(house.hooks.computed["materials.bake"_step], 2);
   const Project p = house.open();
-  EXPECT_EQ(p.state("surface.fit", FrameIndex{1}), StepState::Failed);
-  EXPECT_THAT(p.failureOf("surface.fit", FrameIndex{1}), HasSubstr("x.png"));
-  EXPECT_EQ(p.state("surface.refine", FrameIndex{1}), StepState::Pending);
+  EXPECT_EQ(p.state("surface.fit"_step, FrameIndex{1}), StepState::Failed);
+  EXPECT_THAT(p.failureOf("surface.fit"_step, FrameIndex{1}), HasSubstr("x.png"));
+  EXPECT_EQ(p.state("surface.refine"_step, FrameIndex{1}), StepState::Pending);
   EXPECT_EQ(p.stageState("materials", FrameIndex{2}), StepState::Done);
 
   house.hooks.at_step = nullptr;  // mended
   EXPECT_EQ(house.finish(house.open()).outcome, JobOutcome::Done);
-  EXPECT_EQ(house.open().state("surface.fit", FrameIndex{1}), StepState::Done);
-  EXPECT_TRUE(house.open().failureOf("surface.fit", FrameIndex{1}).empty());
+  EXPECT_EQ(house.open().state("surface.fit"_step, FrameIndex{1}), StepState::Done);
+  EXPECT_TRUE(house.open().failureOf("surface.fit"_step, FrameIndex{1}).empty());
 }
 
 TEST(Run, LackOfMemoryEndsItWithItsOwnKind) {
   FakeHouse house;
-  house.hooks.at_step = [](const std::string& step, StepContext&) {
-    if (step == "surface.fit") throw std::bad_alloc();
+  house.hooks.at_step = [](const StepId& step, StepContext&) {
+    if (step == "surface.fit"_step) throw std::bad_alloc();
   };
   const JobFinished finished = house.finish(house.newProject());
   EXPECT_EQ(finished.outcome, JobOutcome::Failed);
@@ -133,8 +135,8 @@ TEST(Run, LackOfMemoryEndsItWithItsOwnKind) {
 TEST(Run, ACancelEndsItSoonAndLeavesOnlyWholeResults) {
   FakeHouse house;
   std::atomic<bool> inside{false};
-  house.hooks.at_step = [&](const std::string& step, StepContext& c) {
-    if (step != "surface.fit") return;
+  house.hooks.at_step = [&](const StepId& step, StepContext& c) {
+    if (step != "surface.fit"_step) return;
     std::ofstream(c.folder / "half.txt") << "half";
     inside = true;
     for (;;) {
@@ -157,15 +159,15 @@ TEST(Run, ACancelEndsItSoonAndLeavesOnlyWholeResults) {
   for (const auto& entry : std::filesystem::directory_iterator(house.root() / "p.beam" / "results")) {
     EXPECT_NE(entry.path().filename().string().front(), '.');
   }
-  EXPECT_EQ(house.open().state("surface.seed", {}), StepState::Done);
-  EXPECT_EQ(house.open().state("surface.fit", {}), StepState::Pending);
+  EXPECT_EQ(house.open().state("surface.seed"_step, {}), StepState::Done);
+  EXPECT_EQ(house.open().state("surface.fit"_step, {}), StepState::Pending);
 }
 
 TEST(Run, ADamagedResultIsNamedAndComputedAgain) {
   FakeHouse house;
   house.finish(house.newProject());
   const auto whole = productsOf(house.root() / "p.beam");
-  const auto folder = house.open().result("surface.fit", FrameIndex{1});
+  const auto folder = house.open().result("surface.fit"_step, FrameIndex{1});
   ASSERT_TRUE(folder);
   std::ofstream(*folder / "data.txt", std::ios::in | std::ios::out) << "?";
   house.hooks.computed.clear();
@@ -174,14 +176,14 @@ TEST(Run, ADamagedResultIsNamedAndComputedAgain) {
     if (const auto* w = std::get_if<JobWarning>(&event)) warning = w->text;
   }
   EXPECT_THAT(warning, HasSubstr("data.txt"));
-  EXPECT_EQ(house.hooks.computed, (std::map<std::string, int>{{"surface.fit", 1}}));
+  EXPECT_EQ(house.hooks.computed, (std::map<StepId, int>{{"surface.fit"_step, 1}}));
   EXPECT_EQ(productsOf(house.root() / "p.beam"), whole);
 }
 
 TEST(Run, AResultMadeWhileItsInputChangedIsNotKept) {
   FakeHouse house;
-  house.hooks.at_step = [&](const std::string& step, StepContext& c) {
-    if (step == "surface.fit" && c.frame.value == 0) house.frames->changed[{0, 0}] = 201;
+  house.hooks.at_step = [&](const StepId& step, StepContext& c) {
+    if (step == "surface.fit"_step && c.frame.value == 0) house.frames->changed[{0, 0}] = 201;
   };
   const JobFinished finished = house.finish(house.newProject());
   ASSERT_EQ(finished.failed.size(), 1u);
@@ -190,18 +192,18 @@ TEST(Run, AResultMadeWhileItsInputChangedIsNotKept) {
 
 TEST(Run, WarningsOfAStepAreInItsRecord) {
   FakeHouse house;
-  house.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.seed" && c.frame.value == 0) logWarning("camera left is dark");
+  house.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.seed"_step && c.frame.value == 0) logWarning("camera left is dark");
     c.scores["count"] = 5;
   };
   house.finish(house.newProject());
-  const auto record = house.open().record("surface.seed", FrameIndex{0});
+  const auto record = house.open().record("surface.seed"_step, FrameIndex{0});
   ASSERT_TRUE(record);
   EXPECT_EQ(record->warnings, (std::vector<std::string>{"camera left is dark"}));
   EXPECT_EQ(record->scores.at("count"), 5);
   EXPECT_EQ(record->device, "Fake device");
   EXPECT_GT(record->peak_memory_bytes, 1000000u);
-  EXPECT_TRUE(house.open().record("surface.fit", FrameIndex{0})->warnings.empty());
+  EXPECT_TRUE(house.open().record("surface.fit"_step, FrameIndex{0})->warnings.empty());
 }
 
 TEST(Run, ProgressGrowsAndEndsBelowOrAtOne) {
@@ -255,8 +257,8 @@ TEST(ReadOnlyProject, CanBeLookedAtAndReusedButNotRun) {
   const auto before = everythingIn(house.root() / "p.beam");
   EXPECT_TRUE(asOrdinaryUser([&] {
     const Project p = house.open();
-    return p.readOnly() && p.state("materials.bake", FrameIndex{0}) == StepState::Done &&
-           p.state("materials.bake", FrameIndex{1}) == StepState::Pending;
+    return p.readOnly() && p.state("materials.bake"_step, FrameIndex{0}) == StepState::Done &&
+           p.state("materials.bake"_step, FrameIndex{1}) == StepState::Pending;
   }));
   EXPECT_TRUE(asOrdinaryUser([&] {
     return house.finish(house.open(), {{FrameIndex{0}}, "", ""}).outcome == JobOutcome::Done;

@@ -23,8 +23,8 @@ std::vector<JobEvent> eventsOf(Runner& runner) {
 }
 
 // A run that is asked to stop when it is in `step` of frame 1.
-JobFinished stoppedIn(FakeHouse& house, Runner& runner, const std::string& step, StopAfter what) {
-  house.hooks.at_step = [&, step, what](const std::string& id, StepContext& c) {
+JobFinished stoppedIn(FakeHouse& house, Runner& runner, const StepId& step, StopAfter what) {
+  house.hooks.at_step = [&, step, what](const StepId& id, StepContext& c) {
     if (id == step && c.frame.value == 1) runner.requestStopAfter(what);
   };
   runner.start(house.newProject(), {}, std::make_shared<FakeDevice>());
@@ -42,23 +42,23 @@ std::map<std::string, std::string> productsOfAnUndisturbedRun() {
 TEST(StopAfter, AStepKeepsItAndStartsNoOther) {
   FakeHouse house;
   Runner runner;
-  const JobFinished finished = stoppedIn(house, runner, "surface.fit", StopAfter::Step);
+  const JobFinished finished = stoppedIn(house, runner, "surface.fit"_step, StopAfter::Step);
   EXPECT_EQ(finished.outcome, JobOutcome::Cancelled);
   EXPECT_TRUE(finished.at_rest);
   ASSERT_FALSE(finished.notes.empty());
   EXPECT_THAT(finished.notes.back(), HasSubstr("\"Fit\" of frame 001"));
   EXPECT_FALSE(runner.running());
-  EXPECT_EQ(house.open().state("surface.fit", FrameIndex{1}), StepState::Done);
-  EXPECT_EQ(house.open().state("surface.refine", FrameIndex{1}), StepState::Pending);
+  EXPECT_EQ(house.open().state("surface.fit"_step, FrameIndex{1}), StepState::Done);
+  EXPECT_EQ(house.open().state("surface.refine"_step, FrameIndex{1}), StepState::Pending);
 }
 
 TEST(StopAfter, AFrameFinishesEveryStepOfItAndStartsNoOther) {
   FakeHouse house;
   Runner runner;
-  const JobFinished finished = stoppedIn(house, runner, "surface.seed", StopAfter::Frame);
+  const JobFinished finished = stoppedIn(house, runner, "surface.seed"_step, StopAfter::Frame);
   EXPECT_TRUE(finished.at_rest);
   EXPECT_EQ(house.open().stageState("materials", FrameIndex{1}), StepState::Done);
-  EXPECT_EQ(house.open().state("surface.seed", FrameIndex{2}), StepState::Pending);
+  EXPECT_EQ(house.open().state("surface.seed"_step, FrameIndex{2}), StepState::Pending);
 }
 
 TEST(StopAfter, AStoppedRunGoesOnToTheSameBytes) {
@@ -67,11 +67,11 @@ TEST(StopAfter, AStoppedRunGoesOnToTheSameBytes) {
     FakeHouse house;
     {
       Runner runner;
-      stoppedIn(house, runner, "surface.refine", what);
+      stoppedIn(house, runner, "surface.refine"_step, what);
     }
     house.hooks.computed.clear();
     EXPECT_EQ(house.finish(house.open()).outcome, JobOutcome::Done);
-    EXPECT_EQ(house.hooks.computed["materials.bake"], what == StopAfter::Step ? 2 : 1);
+    EXPECT_EQ(house.hooks.computed["materials.bake"_step], what == StopAfter::Step ? 2 : 1);
     EXPECT_EQ(productsOf(house.root() / "p.beam"), whole);
   }
 }
@@ -79,8 +79,8 @@ TEST(StopAfter, AStoppedRunGoesOnToTheSameBytes) {
 TEST(StopAfter, TheLastStepOfARunIsARunThatIsDone) {
   FakeHouse house;
   Runner runner;
-  house.hooks.at_step = [&](const std::string& id, StepContext& c) {
-    if (id == "materials.bake" && c.frame.value == 2) runner.requestStopAfter(StopAfter::Step);
+  house.hooks.at_step = [&](const StepId& id, StepContext& c) {
+    if (id == "materials.bake"_step && c.frame.value == 2) runner.requestStopAfter(StopAfter::Step);
   };
   runner.start(house.newProject(), {}, std::make_shared<FakeDevice>());
   const JobFinished finished = std::get<JobFinished>(eventsOf(runner).back());
@@ -91,7 +91,7 @@ TEST(StopAfter, TheLastStepOfARunIsARunThatIsDone) {
 TEST(StopAfter, IsForgottenByTheNextRun) {
   FakeHouse house;
   Runner runner;
-  stoppedIn(house, runner, "surface.fit", StopAfter::Step);
+  stoppedIn(house, runner, "surface.fit"_step, StopAfter::Step);
   runner.start(house.open(), {}, std::make_shared<FakeDevice>());
   EXPECT_EQ(std::get<JobFinished>(eventsOf(runner).back()).outcome, JobOutcome::Done);
 }
@@ -100,8 +100,8 @@ TEST(StopAfter, StoppingNowIsStillPossible) {
   FakeHouse house;
   Runner runner;
   std::atomic<bool> inside{false};
-  house.hooks.at_step = [&](const std::string& id, StepContext& c) {
-    if (id != "surface.fit") return;
+  house.hooks.at_step = [&](const StepId& id, StepContext& c) {
+    if (id != "surface.fit"_step) return;
     inside = true;
     for (;;) {
       c.progress.check();
@@ -115,7 +115,7 @@ TEST(StopAfter, StoppingNowIsStillPossible) {
   const JobFinished finished = std::get<JobFinished>(eventsOf(runner).back());
   EXPECT_EQ(finished.outcome, JobOutcome::Cancelled);
   EXPECT_FALSE(finished.at_rest);
-  EXPECT_EQ(house.open().state("surface.fit", {}), StepState::Pending);
+  EXPECT_EQ(house.open().state("surface.fit"_step, {}), StepState::Pending);
 }
 
 // Waits until `runner` tells something of kind E.
@@ -132,12 +132,12 @@ E next(Runner& runner) {
 TEST(WaitingRun, SaysOnceForWhatAndWhom) {
   FakeHouse house;
   const Project project = house.newProject();
-  auto lease = project.store().tryLease(project.key("surface.fit", FrameIndex{0}));
+  auto lease = project.store().tryLease(project.key("surface.fit"_step, FrameIndex{0}));
   ASSERT_TRUE(lease);
   Runner runner;
   runner.start(house.open(), {{FrameIndex{0}}, "", ""}, std::make_shared<FakeDevice>());
   const JobWaiting waiting = next<JobWaiting>(runner);
-  EXPECT_EQ(waiting.ref.step, "surface.fit");
+  EXPECT_EQ(waiting.ref.step, "surface.fit"_step);
   EXPECT_EQ(waiting.ref.frame_name, "000");
   EXPECT_EQ(waiting.holder, "process " + std::to_string(::getpid()));
   std::this_thread::sleep_for(350ms);  // more than two looks
@@ -152,7 +152,7 @@ TEST(WaitingRun, SaysOnceForWhatAndWhom) {
 TEST(WaitingRun, SaysNothingWhileItHasOtherFramesToDo) {
   FakeHouse house;
   const Project project = house.newProject();
-  auto lease = project.store().tryLease(project.key("surface.fit", FrameIndex{0}));
+  auto lease = project.store().tryLease(project.key("surface.fit"_step, FrameIndex{0}));
   ASSERT_TRUE(lease);
   bool told = false;
   Runner runner;
@@ -172,7 +172,7 @@ TEST(WaitingRun, SaysNothingWhileItHasOtherFramesToDo) {
 TEST(WaitingRun, RestsAtOnceWhenItIsAskedToStopAfterSomething) {
   FakeHouse house;
   const Project project = house.newProject();
-  const auto lease = project.store().tryLease(project.key("surface.fit", FrameIndex{0}));
+  const auto lease = project.store().tryLease(project.key("surface.fit"_step, FrameIndex{0}));
   Runner runner;
   runner.start(house.open(), {{FrameIndex{0}}, "", ""}, std::make_shared<FakeDevice>());
   next<JobWaiting>(runner);
@@ -184,7 +184,7 @@ TEST(WaitingRun, RestsAtOnceWhenItIsAskedToStopAfterSomething) {
 TEST(WaitingRun, NamesTheMachineOfAProcessElsewhere) {
   FakeHouse house;
   const Project project = house.newProject();
-  const Digest key = project.key("surface.fit", FrameIndex{0});
+  const Digest key = project.key("surface.fit"_step, FrameIndex{0});
   EXPECT_EQ(project.store().leaseHolder(key), "another process");
   std::filesystem::create_directories(project.folder() / "leases");
   std::ofstream(project.folder() / "leases" / key.hex()) << "host studio-7.example, process 12\n";

@@ -19,7 +19,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace std::chrono_literals;
-using Counts = std::map<std::string, int>;
+using Counts = std::map<StepId, int>;
 
 class TakeRun : public ::testing::Test {
  protected:
@@ -47,24 +47,28 @@ TEST_F(TakeRun, AWholeRunMakesSegmentsAndFitsTheFirstFrameOfEach) {
   house_.newProject();
   RunRequest request;
   request.segment_frames = 4;
-  EXPECT_EQ(countsOf(request), (Counts{{"capture.import", 1},
-                                       {"track.pose", 6},
-                                       {"surface.fit", 2},
-                                       {"surface.refine", 6},
-                                       {"materials.bake", 6}}));
+  EXPECT_EQ(countsOf(request), (Counts{{"capture.import"_step, 1},
+                                       {"track.pose"_step, 6},
+                                       {"surface.fit"_step, 2},
+                                       {"surface.refine"_step, 6},
+                                       {"materials.bake"_step, 6}}));
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "003", 1}, SavedTake{"004", "005", 1}));
   EXPECT_EQ(countsOf(request), Counts{});
 }
 
 TEST_F(TakeRun, NamedFramesAreTakesAndALoneOneIsNotTracked) {
   house_.newProject();
-  EXPECT_EQ(
-      countsOf(framesOf({4})),
-      (Counts{{"capture.import", 1}, {"surface.fit", 1}, {"surface.refine", 1}, {"materials.bake", 1}}));
-  EXPECT_EQ(countsOf(framesOf({0, 1, 4})),
-            (Counts{{"track.pose", 2}, {"surface.fit", 1}, {"surface.refine", 2}, {"materials.bake", 2}}));
+  EXPECT_EQ(countsOf(framesOf({4})), (Counts{{"capture.import"_step, 1},
+                                             {"surface.fit"_step, 1},
+                                             {"surface.refine"_step, 1},
+                                             {"materials.bake"_step, 1}}));
+  EXPECT_EQ(countsOf(framesOf({0, 1, 4})), (Counts{{"track.pose"_step, 2},
+                                                   {"surface.fit"_step, 1},
+                                                   {"surface.refine"_step, 2},
+                                                   {"materials.bake"_step, 2}}));
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "001", 1}));
-  EXPECT_EQ(countsOf({}), (Counts{{"track.pose", 4}, {"surface.refine", 4}, {"materials.bake", 4}}))
+  EXPECT_EQ(countsOf({}),
+            (Counts{{"track.pose"_step, 4}, {"surface.refine"_step, 4}, {"materials.bake"_step, 4}}))
       << "the take goes on; frame 4 is no longer alone";
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "005", 1}));
 }
@@ -80,7 +84,7 @@ TEST_F(TakeRun, AFrameOfASolvedTakeStaysInItWhereThatIsWanted) {
   beyond.keeps_takes = true;
   countsOf(beyond);
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "003", 1}, SavedTake{"003", "004", 1}));
-  EXPECT_EQ(countsOf(framesOf({2})).at("surface.fit"), 1) << "without the wish it is fitted alone";
+  EXPECT_EQ(countsOf(framesOf({2})).at("surface.fit"_step), 1) << "without the wish it is fitted alone";
 }
 
 TEST_F(TakeRun, AFrameIsFittedAloneWhereWhatItBuildsOnIsNotSolved) {
@@ -94,17 +98,17 @@ TEST_F(TakeRun, AFrameIsFittedAloneWhereWhatItBuildsOnIsNotSolved) {
   EXPECT_TRUE(estimateRun(house_.open(), third, {}).leaves_take);
   EXPECT_FALSE(estimateRun(house_.open(), framesOf({0}), {}).leaves_take) << "nothing is before it";
   const Counts counts = countsOf(third);
-  EXPECT_EQ(counts.at("surface.fit"), 1);
-  EXPECT_FALSE(counts.contains("track.pose"));
+  EXPECT_EQ(counts.at("surface.fit"_step), 1);
+  EXPECT_FALSE(counts.contains("track.pose"_step));
 }
 
 TEST_F(TakeRun, EveryKthFrameIsATakeWithAStride) {
   house_.newProject();
   const Counts counts = countsOf(framesOf({}, 2));
-  EXPECT_EQ(counts.at("surface.refine"), 3);
-  EXPECT_EQ(counts.at("surface.fit"), 1);
+  EXPECT_EQ(counts.at("surface.refine"_step), 3);
+  EXPECT_EQ(counts.at("surface.fit"_step), 1);
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "004", 2}));
-  EXPECT_EQ(house_.open().state("surface.refine", {1}), StepState::Pending);
+  EXPECT_EQ(house_.open().state("surface.refine"_step, {1}), StepState::Pending);
   countsOf(framesOf({1, 2, 3, 5}, 2));
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "004", 2}, SavedTake{"001", "003", 2}));
   EXPECT_EQ(house_.finish(house_.open(), framesOf({}, 0)).kind, Error::Kind::Usage);
@@ -135,7 +139,8 @@ TEST_F(TakeRun, StatusTellsTakesAndStepsThatAreNotNeeded) {
 
 TEST_F(TakeRun, AnyStageTakesAlongWhatItsFramesBeforeNeed) {
   const RunPlan plan = makeRunPlan(house_.newProject(), {.stage = "materials"});
-  EXPECT_THAT(plan.frame_steps, ElementsAre("track.pose", "surface.fit", "surface.refine", "materials.bake"));
+  EXPECT_THAT(plan.frame_steps, ElementsAre("track.pose"_step, "surface.fit"_step, "surface.refine"_step,
+                                            "materials.bake"_step));
 }
 
 TEST_F(TakeRun, FramesComeTakeByTake) {
@@ -148,19 +153,19 @@ TEST_F(TakeRun, FramesComeTakeByTake) {
 
 TEST_F(TakeRun, ALaterFrameIsGivenTheFrameBeforeAndAFirstOneIsNot) {
   std::map<int, std::string> seen;
-  house_.hooks.at_step = [&](const std::string& step, StepContext& c) {
-    if (step != "surface.refine") return;
-    EXPECT_EQ(c.later(), c.previousResult("surface.refine") != nullptr);
-    EXPECT_EQ(c.later(), c.inputs.count("surface.fit") == 0);
-    seen[c.frame.value] = c.later() ? c.previousResult("surface.refine")->filename().string() : "";
+  house_.hooks.at_step = [&](const StepId& step, StepContext& c) {
+    if (step != "surface.refine"_step) return;
+    EXPECT_EQ(c.later(), c.previousResult("surface.refine"_step) != nullptr);
+    EXPECT_EQ(c.later(), c.inputs.count("surface.fit"_step) == 0);
+    seen[c.frame.value] = c.later() ? c.previousResult("surface.refine"_step)->filename().string() : "";
   };
   RunRequest request = framesOf({0, 1, 2});
   request.until = "surface";
   house_.finish(house_.newProject(), request);
   const Project after = house_.open();
   EXPECT_EQ(seen, (std::map<int, std::string>{{0, ""},
-                                              {1, after.key("surface.refine", {0}).hex()},
-                                              {2, after.key("surface.refine", {1}).hex()}}));
+                                              {1, after.key("surface.refine"_step, {0}).hex()},
+                                              {2, after.key("surface.refine"_step, {1}).hex()}}));
 }
 
 TEST_F(TakeRun, ABrokenOffRunGoesOnToTheSameResults) {
@@ -168,19 +173,19 @@ TEST_F(TakeRun, ABrokenOffRunGoesOnToTheSameResults) {
   const RunRequest request{.until = "surface"};
   countsOf(request, "whole.beam");
   house_.newProject();
-  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.refine" && c.frame.value == 3) throw Error(Error::Kind::Storage, "disk full");
+  house_.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.refine"_step && c.frame.value == 3) throw Error(Error::Kind::Storage, "disk full");
   };
   EXPECT_EQ(house_.finish(house_.open(), request).outcome, JobOutcome::Failed);
   house_.hooks.at_step = nullptr;
-  EXPECT_EQ(countsOf(request).at("surface.refine"), 3);
+  EXPECT_EQ(countsOf(request).at("surface.refine"_step), 3);
   EXPECT_EQ(productsOf(house_.root() / "p.beam"), productsOf(house_.root() / "whole.beam"));
 }
 
 TEST_F(TakeRun, AFailedFrameEndsItsTakeAndTheNextBeginsAnother) {
   house_.newProject();
-  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.refine" && c.frame.value == 2) throw Error(Error::Kind::Data, "too dark");
+  house_.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.refine"_step && c.frame.value == 2) throw Error(Error::Kind::Data, "too dark");
   };
   std::string warning;
   double most = 0;
@@ -194,12 +199,13 @@ TEST_F(TakeRun, AFailedFrameEndsItsTakeAndTheNextBeginsAnother) {
   EXPECT_EQ(failed, 1u);
   EXPECT_THAT(warning, HasSubstr("frame 003 begins a new take"));
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "002", 1}, SavedTake{"003", "005", 1}));
-  EXPECT_EQ(house_.hooks.computed.at("surface.fit"), 2);
-  EXPECT_EQ(house_.hooks.computed.at("materials.bake"), 5);
-  EXPECT_EQ(house_.open().state("surface.refine", {2}), StepState::Failed);
+  EXPECT_EQ(house_.hooks.computed.at("surface.fit"_step), 2);
+  EXPECT_EQ(house_.hooks.computed.at("materials.bake"_step), 5);
+  EXPECT_EQ(house_.open().state("surface.refine"_step, {2}), StepState::Failed);
 
   house_.hooks.at_step = nullptr;
-  EXPECT_EQ(countsOf({}), (Counts{{"surface.refine", 1}, {"materials.bake", 1}})) << "the rest stays";
+  EXPECT_EQ(countsOf({}), (Counts{{"surface.refine"_step, 1}, {"materials.bake"_step, 1}}))
+      << "the rest stays";
 }
 
 TEST_F(TakeRun, APictureThatIsGoneOrUnreadableSpoilsNeitherRunNorState) {
@@ -226,16 +232,16 @@ TEST_F(TakeRun, APictureThatIsGoneOrUnreadableSpoilsNeitherRunNorState) {
     return imported;
   };
   house_.newProject();
-  EXPECT_EQ(house_.open().state("surface.fit", {0}), StepState::Pending);
-  EXPECT_EQ(countsOf({}).at("materials.bake"), 6);
-  EXPECT_EQ(house_.open().state("materials.bake", {2}), StepState::Done);
-  EXPECT_EQ(house_.open().state("materials.bake", {4}), StepState::Done);
+  EXPECT_EQ(house_.open().state("surface.fit"_step, {0}), StepState::Pending);
+  EXPECT_EQ(countsOf({}).at("materials.bake"_step), 6);
+  EXPECT_EQ(house_.open().state("materials.bake"_step, {2}), StepState::Done);
+  EXPECT_EQ(house_.open().state("materials.bake"_step, {4}), StepState::Done);
 }
 
 TEST_F(TakeRun, AFailureThatTheNextFrameDoesNotNeedSplitsNothing) {
   house_.newProject();
-  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "materials.bake" && c.frame.value == 2) throw Error(Error::Kind::Data, "no light");
+  house_.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "materials.bake"_step && c.frame.value == 2) throw Error(Error::Kind::Data, "no light");
   };
   EXPECT_EQ(house_.finish(house_.open()).failed.size(), 1u);
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "005", 1}));
@@ -244,7 +250,7 @@ TEST_F(TakeRun, AFailureThatTheNextFrameDoesNotNeedSplitsNothing) {
 TEST_F(TakeRun, NamedFramesComputeNothingOutsideOfThem) {
   house_.newProject();
   std::set<int> touched;
-  house_.hooks.at_step = [&](const std::string&, StepContext& c) { touched.insert(c.frame.value); };
+  house_.hooks.at_step = [&](const StepId&, StepContext& c) { touched.insert(c.frame.value); };
   countsOf(framesOf({0, 1, 2, 3}));
   touched.clear();
   countsOf(framesOf({2, 3}));
@@ -254,47 +260,49 @@ TEST_F(TakeRun, NamedFramesComputeNothingOutsideOfThem) {
 TEST_F(TakeRun, ALaterFrameWaitsForTheFrameBeforeThatAnotherProcessIsAt) {
   Project p = house_.newProject();
   arrangeTakes(p, {});
-  std::optional<FileLock> other = p.store().tryLease(p.key("surface.refine", {1}));
+  std::optional<FileLock> other = p.store().tryLease(p.key("surface.refine"_step, {1}));
   ASSERT_TRUE(other);
   int refined_before = -1;
-  house_.hooks.at_step = [&](const std::string& step, StepContext& c) {
-    if (step != "track.pose" || c.frame.value != 5) return;
-    refined_before = house_.hooks.computed["surface.refine"];
+  house_.hooks.at_step = [&](const StepId& step, StepContext& c) {
+    if (step != "track.pose"_step || c.frame.value != 5) return;
+    refined_before = house_.hooks.computed["surface.refine"_step];
     other.reset();
   };
   EXPECT_EQ(house_.finish(house_.open(), {.until = "surface"}).outcome, JobOutcome::Done);
   EXPECT_EQ(refined_before, 1) << "only the frame before the busy one; poses do not wait";
-  EXPECT_EQ(house_.hooks.computed["surface.refine"], 6);
-  EXPECT_EQ(house_.hooks.computed["surface.fit"], 1);
+  EXPECT_EQ(house_.hooks.computed["surface.refine"_step], 6);
+  EXPECT_EQ(house_.hooks.computed["surface.fit"_step], 1);
 }
 
 TEST_F(TakeRun, ASegmentSolvesItsLeadForItselfAlone) {
   house_.newProject();
   RunRequest request = framesOf({3, 4, 5});
   request.overlap = 2;
-  EXPECT_EQ(countsOf(request), (Counts{{"capture.import", 1},
-                                       {"track.pose", 5},
-                                       {"surface.fit", 1},
-                                       {"surface.refine", 5},
-                                       {"materials.bake", 3}}))
+  EXPECT_EQ(countsOf(request), (Counts{{"capture.import"_step, 1},
+                                       {"track.pose"_step, 5},
+                                       {"surface.fit"_step, 1},
+                                       {"surface.refine"_step, 5},
+                                       {"materials.bake"_step, 3}}))
       << "nothing builds on what is baked";
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"001", "005", 1, 2}));
-  EXPECT_EQ(house_.open().state("surface.refine", {2}), StepState::Pending);
-  EXPECT_EQ(house_.open().state("surface.refine", {3}), StepState::Done);
-  EXPECT_FALSE(house_.open().applies("surface.fit", {3})) << "it is a later frame";
+  EXPECT_EQ(house_.open().state("surface.refine"_step, {2}), StepState::Pending);
+  EXPECT_EQ(house_.open().state("surface.refine"_step, {3}), StepState::Done);
+  EXPECT_FALSE(house_.open().applies("surface.fit"_step, {3})) << "it is a later frame";
 
-  const Digest seam = house_.open().key("surface.refine", {3});
-  EXPECT_EQ(countsOf({}),
-            (Counts{{"track.pose", 3}, {"surface.refine", 3}, {"surface.fit", 1}, {"materials.bake", 3}}))
+  const Digest seam = house_.open().key("surface.refine"_step, {3});
+  EXPECT_EQ(countsOf({}), (Counts{{"track.pose"_step, 3},
+                                  {"surface.refine"_step, 3},
+                                  {"surface.fit"_step, 1},
+                                  {"materials.bake"_step, 3}}))
       << "the frames before make a take of their own";
-  EXPECT_EQ(house_.open().key("surface.refine", {3}), seam);
+  EXPECT_EQ(house_.open().key("surface.refine"_step, {3}), seam);
   EXPECT_EQ(countsOf({}), Counts{});
 }
 
 TEST_F(TakeRun, AFailedLeadShortensIt) {
   house_.newProject();
-  house_.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.refine" && c.frame.value == 1) throw Error(Error::Kind::Data, "too dark");
+  house_.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.refine"_step && c.frame.value == 1) throw Error(Error::Kind::Data, "too dark");
   };
   RunRequest request = framesOf({3, 4, 5});
   request.overlap = 2;
@@ -307,7 +315,7 @@ TEST_F(TakeRun, AFailedLeadShortensIt) {
   EXPECT_EQ(told, 1);
   EXPECT_EQ(finished.outcome, JobOutcome::Done) << "all that was asked for is there";
   EXPECT_THAT(saved(), ElementsAre(SavedTake{"002", "005", 1, 1}));
-  EXPECT_EQ(house_.hooks.computed.at("materials.bake"), 3);
+  EXPECT_EQ(house_.hooks.computed.at("materials.bake"_step), 3);
 }
 
 TEST_F(TakeRun, AScoutSaysWhereItEnds) {
@@ -328,11 +336,11 @@ TEST_F(TakeRun, TwoRunnersShareATakeWithoutDoingAnythingTwice) {
     for (JobFinished& f : finished) both.emplace_back([&, this] { f = house_.finish(house_.open()); });
   }
   for (const JobFinished& f : finished) EXPECT_EQ(f.outcome, JobOutcome::Done) << f.message;
-  EXPECT_EQ(house_.hooks.computed, (Counts{{"capture.import", 1},
-                                           {"track.pose", 6},
-                                           {"surface.fit", 1},
-                                           {"surface.refine", 6},
-                                           {"materials.bake", 6}}));
+  EXPECT_EQ(house_.hooks.computed, (Counts{{"capture.import"_step, 1},
+                                           {"track.pose"_step, 6},
+                                           {"surface.fit"_step, 1},
+                                           {"surface.refine"_step, 6},
+                                           {"materials.bake"_step, 6}}));
 }
 
 TEST_F(TakeRun, TakesOfTwoProcessesAreAllKept) {

@@ -47,8 +47,8 @@ TEST(TakeSurvey, SaysWhatProjectSaysBeforeDuringAndAfterARun) {
   Project project = house.newProject();
   TakeSurveyor surveyor;
   EXPECT_THAT(laneOf(surveyor.survey(project), "surface").cells, Each(CellState::Empty));
-  house.hooks.at_step = [&](const std::string& step, StepContext& c) {
-    if (step != "surface.fit" || c.frame.value != 1) return;
+  house.hooks.at_step = [&](const StepId& step, StepContext& c) {
+    if (step != "surface.fit"_step || c.frame.value != 1) return;
     const TakeSurvey during = surveyor.survey(project);
     EXPECT_THAT(laneOf(during, "surface").cells,
                 ElementsAre(CellState::Done, CellState::Running, CellState::Empty));
@@ -82,8 +82,8 @@ TEST(TakeSurvey, TellsStaleFromNeverMadeAndForgivesSettingsThatComeBack) {
 TEST(TakeSurvey, KeepsWhyAFrameFailed) {
   FakeHouse house;
   Project project = house.newProject();
-  house.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.refine" && c.frame.value == 2) throw Error(Error::Kind::Data, "too dark");
+  house.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.refine"_step && c.frame.value == 2) throw Error(Error::Kind::Data, "too dark");
   };
   house.finish(project);
   const TakeSurvey survey = TakeSurveyor().survey(project);
@@ -138,8 +138,8 @@ TEST(TakeSurvey, BlockedLanesSayWhatTheyNeed) {
 TEST(TakeSurvey, DrawsScoresAsCurvesWithGaps) {
   FakeHouse house;
   Project project = house.newProject();
-  house.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step == "surface.fit") c.scores["loss"] = 0.5 + c.frame.value;
+  house.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step == "surface.fit"_step) c.scores["loss"] = 0.5 + c.frame.value;
   };
   for (const int frame : {0, 2}) house.finish(project, frameOnly(frame));
   const TakeSurvey survey = TakeSurveyor().survey(project);
@@ -174,9 +174,9 @@ TEST(TakeSurvey, AResultThatGoesOrLosesAFileIsNotDone) {
   house.finish(project);
   TakeSurveyor surveyor;
   surveyor.survey(project);
-  std::filesystem::remove_all(*project.result("materials.bake", FrameIndex{0}));
+  std::filesystem::remove_all(*project.result("materials.bake"_step, FrameIndex{0}));
   EXPECT_EQ(laneOf(surveyor.survey(project), "materials").cells[0], CellState::Empty);
-  std::filesystem::remove(*project.result("materials.bake", FrameIndex{1}) / "data.txt");
+  std::filesystem::remove(*project.result("materials.bake"_step, FrameIndex{1}) / "data.txt");
   EXPECT_NE(laneOf(TakeSurveyor().survey(project), "materials").cells[1], CellState::Done);
 }
 

@@ -13,7 +13,7 @@
 namespace beam::testing {
 namespace {
 
-StepKind kind(const std::string& step) { return {step, false, digestOf(std::string())}; }
+StepKind kind(const std::string& step) { return {StepId(step), false, digestOf(std::string())}; }
 
 ProgressReport share(double fraction) { return {fraction, "", 0, 0}; }
 
@@ -95,7 +95,7 @@ TEST(Run, TellsTheTimeThatIsLeftWhenItWasMeasuredBefore) {
   RunRequest request;
   for (const StageInfo& info : fakeStages()) {
     for (const StepInfo& step : info.steps)
-      request.times.add({info.id + "." + step.id, false, settingsDigest({})}, {step.weight}, 100);
+      request.times.add({StepId(info.id, step.id), false, settingsDigest({})}, {step.weight}, 100);
   }
   double first = -1, low = 0, high = 0;
   for (const JobEvent& event : house.run(project, request)) {
@@ -181,8 +181,8 @@ TEST(Run, NeverTellsLessThanItsCounterSays) {
   FakeHouse house;
   house.frame_names = {"000"};
   Project project = house.newProject();
-  house.hooks.at_step = [](const std::string& step, StepContext& c) {
-    if (step != "surface.fit") return;
+  house.hooks.at_step = [](const StepId& step, StepContext& c) {
+    if (step != "surface.fit"_step) return;
     c.progress.expect(60, "iterations");
     for (int i = 0; i < 60; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(25));
@@ -192,7 +192,7 @@ TEST(Run, NeverTellsLessThanItsCounterSays) {
   RunRequest request;
   for (const StageInfo& info : fakeStages()) {
     for (const StepInfo& step : info.steps)
-      request.times.add({info.id + "." + step.id, false, settingsDigest({})}, {step.weight}, 0.01);
+      request.times.add({StepId(info.id, step.id), false, settingsDigest({})}, {step.weight}, 0.01);
   }
   int told = 0;
   for (const JobEvent& event : house.run(project, request)) {

@@ -14,6 +14,7 @@
 #include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
 #include "core/stages/result_files.h"
+#include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
@@ -25,32 +26,30 @@ using ::testing::ElementsAre;
 constexpr float kTurn = 0.3f;  // radians a frame, about +Y
 
 std::vector<StageInfo> stages() {
-  return {{"track",
-           "Track",
-           "",
-           {{.id = "joints",
-             .title = "Joints",
-             .reads = {Reads::Pictures},
-             .frames = Frames::InTakes,
-             .later = {.previous = {"track.joints"}}}}},
-          {"surface",
-           "Surface",
-           "",
-           {{.id = "fit",
-             .title = "Fit",
-             .reads = {Reads::Pictures},
-             .later = {.inputs = {"track.joints"}, .previous = {"surface.fit"}}},
-            {.id = "refine",
-             .title = "Refine",
-             .inputs = {"surface.fit"},
-             .later = {.inputs = {"track.joints"}, .previous = {"surface.refine"}}}}},
-          {"materials",
-           "Materials",
-           "",
-           {{.id = "fit",
-             .title = "Fit",
-             .inputs = {"surface.refine"},
-             .later = {.previous = {"materials.fit"}}}}}};
+  return {
+      {"track",
+       "Track",
+       "",
+       {{.id = "joints",
+         .title = "Joints",
+         .reads = {Reads::Pictures},
+         .frames = Frames::InTakes,
+         .later = {.previous = {kJointsStep}}}}},
+      {"surface",
+       "Surface",
+       "",
+       {{.id = "fit",
+         .title = "Fit",
+         .reads = {Reads::Pictures},
+         .later = {.inputs = {kJointsStep}, .previous = {kFitStep}}},
+        {.id = "refine",
+         .title = "Refine",
+         .inputs = {kFitStep},
+         .later = {.inputs = {kJointsStep}, .previous = {kRefineStep}}}}},
+      {"materials",
+       "Materials",
+       "",
+       {{.id = "fit", .title = "Fit", .inputs = {kRefineStep}, .later = {.previous = {kMaterialsStep}}}}}};
 }
 
 GaussianCloud stickAt(float frame) {
@@ -72,7 +71,7 @@ class Scout {
  public:
   explicit Scout(std::set<int> restarts = {}) : restarts_(std::move(restarts)), house_(stages()) {
     house_.frame_names = {"000", "001", "002", "003", "004", "005", "006", "007"};
-    house_.hooks.at_step = [this](const std::string& step, StepContext& c) { write(step, c); };
+    house_.hooks.at_step = [this](const StepId& step, StepContext& c) { write(step, c); };
     project_.emplace(house_.newProject());
     RunRequest request;
     request.every = 3;
@@ -84,16 +83,16 @@ class Scout {
   std::filesystem::path folder() const { return house_.root(); }
 
  private:
-  void write(const std::string& step, StepContext& c) const {
+  void write(const StepId& step, StepContext& c) const {
     const auto f = static_cast<float>(c.frame.value);
-    if (step == "track.joints") {
+    if (step == kJointsStep) {
       writeSplatPly(c.folder / kJointsFile, stickAt(f), nullptr);
       writePosePly(c.folder / kRestPoseFile, poseOf(stickAt(0)));
       writeTrackNote(c.folder, {restarts_.contains(c.frame.value), 1});
       return;
     }
     Materials materials{std::vector<float>(12, 0.1f + 0.1f * f), ShBlock(12, 3), ShBlock(12, 1)};
-    if (step == "materials.fit") return writeSplatPly(c.folder / kMaterialsFile, stickAt(f), &materials);
+    if (step == kMaterialsStep) return writeSplatPly(c.folder / kMaterialsFile, stickAt(f), &materials);
     writeSplatPly(c.folder / kCloudFile, stickAt(f), nullptr);
     if (!c.later() || restarts_.contains(c.frame.value)) return;
     writePosePly(c.folder / kRestPoseFile, poseOf(stickAt(0)));

@@ -46,7 +46,7 @@ std::vector<StageInfo> stages() {
 class Marked {
  public:
   Marked() : house_(stages()) {
-    house_.hooks.at_step = [this](const std::string& step, StepContext& c) { write(step, c); };
+    house_.hooks.at_step = [this](const StepId& step, StepContext& c) { write(step, c); };
     project_.emplace(house_.newProject());
   }
 
@@ -67,14 +67,14 @@ class Marked {
   }
 
  private:
-  void write(const std::string& step, StepContext& c) const {
+  void write(const StepId& step, StepContext& c) const {
     GaussianCloud cloud;
     cloud.position_m.emplace_back(mark_, 0, 0);
     cloud.rotation.assign(1, quat(1, 0, 0, 0));
     cloud.scale_m.assign(1, vec3(0.02f));
     cloud.opacity.assign(1, 0.9f);
     cloud.color = ShBlock(1, 3);
-    if (step == "surface.mesh") {
+    if (step == kMeshStep) {
       Mesh mesh;
       for (const float y : {0.0f, 1.0f}) mesh.vertices.emplace_back(mark_, y, 0);
       mesh.vertices.emplace_back(mark_, 0, 1);
@@ -82,7 +82,7 @@ class Marked {
       return writeMeshPly(c.folder / kMeshFile, mesh);
     }
     const Materials materials{std::vector<float>(1, 0.4f), ShBlock(1, 3), ShBlock(1, 1)};
-    const bool fit = step == "materials.fit";
+    const bool fit = step == kMaterialsStep;
     writeSplatPly(c.folder / (fit ? kMaterialsFile : kCloudFile), cloud, fit ? &materials : nullptr);
   }
   // What is there is a minute older than what comes.
@@ -164,7 +164,7 @@ TEST(Leftovers, DamagedOnesArePassedOver) {
   marked.run(1);
   marked.project().set("surface.iterations", 11);
   marked.run(2);
-  std::ofstream(*marked.project().result("materials.fit", FrameIndex{0}) / kMaterialsFile,
+  std::ofstream(*marked.project().result(kMaterialsStep, FrameIndex{0}) / kMaterialsFile,
                 std::ios::in | std::ios::out)
       << "?";
   marked.project().set("surface.iterations", 12);

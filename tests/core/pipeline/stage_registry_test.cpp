@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/stage_registry.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/message_of.h"
+#include "tests/support/step_literal.h"
+
+namespace beam::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// A stage "light" with one setting, in a group or in none.
+struct Setting {
+  std::string group = "";
+  Effect effect = Effect::Result;
+  double value = 1;
+};
+void describe(Fields& f, Setting& s) {
+  const auto field = [&] {
+    f.field({.name = "gain", .label = "Gain", .help = "Of light.", .effect = s.effect}, s.value);
+  };
+  s.group.empty() ? field() : f.group(s.group, field);
+}
+
+class OneSetting final : public StageOf<Setting> {
+ public:
+  OneSetting(std::vector<StepInfo> steps, const Setting& setting)
+      : info_{"light", "Light", "", std::move(steps)} {
+    options_ = setting;
+  }
+  const StageInfo& info() const override { return info_; }
+  void run(std::string_view, StepContext&) const override {}
+
+ private:
+  StageInfo info_;
+};
+
+void add(const std::vector<StepInfo>& steps, const Setting& setting) {
+  StageRegistry registry;
+  registry.add([=] { return std::make_unique<OneSetting>(steps, setting); });
+}
+
+TEST(StepId, IsAStageAndANameAndComesFromTextOnlyWhereThatIsSaid) {
+  const StepId step("surface", "fit");
+  EXPECT_EQ(step, "surface.fit"_step);
+  EXPECT_EQ(step.text(), "surface.fit");
+  EXPECT_EQ(step.stage(), "surface");
+  EXPECT_EQ(step.name(), "fit");
+  EXPECT_TRUE(StepId().empty());
+  EXPECT_EQ(StepId("surface").name(), "");
+  static_assert(!std::is_convertible_v<std::string, StepId> && !std::is_convertible_v<StepId, std::string>);
+}
+
+TEST(StageRegistry, RefusesAStepThatReadsWhatDoesNotStandBeforeIt) {
+  EXPECT_THAT(
+      messageOf(Error::Kind::Bug,
+                [] { add({{.id = "import", .title = "Import", .inputs = {"light.bake"_step}}}, {}); }),
+      AllOf(HasSubstr("light.import"), HasSubstr("light.bake")));
+}
+
+}  // namespace
+}  // namespace beam::testing
