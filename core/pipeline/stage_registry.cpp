@@ -6,11 +6,36 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/pipeline/result_key.h"
 
 namespace beam {
 
+namespace {
+
+// Fields of groups that belong to no step of the stage, or are of later frames where no step has any.
+void requireKeys(Stage& stage) {
+  const StageInfo& info = stage.info();
+  for (const Field& field : fieldsOf(stage)) {
+    const bool enters = std::any_of(info.steps.begin(), info.steps.end(), [&](const StepInfo& step) {
+      return entersKey(field.info, step.id, !step.later.empty());
+    });
+    if (enters || field.info.effect != Effect::Result) continue;
+    const std::size_t dot = field.info.name.find('.');
+    const bool grouped = dot != std::string::npos;
+    const std::string group =
+        grouped ? fmt::format(" of the group \"{}\"", field.info.name.substr(0, dot)) : "";
+    throw Error(Error::Kind::Bug,
+                fmt::format("stage {}: setting \"{}\"{} changes results and enters no key: expected a group "
+                            "named after a step, or \"later\" where one has later frames",
+                            info.id, grouped ? field.info.name.substr(dot + 1) : field.info.name, group));
+  }
+}
+
+}  // namespace
+
 void StageRegistry::add(Maker maker) {
-  const StageInfo info = maker()->info();
+  const std::unique_ptr<Stage> stage = maker();
+  const StageInfo info = stage->info();
   std::set<StepId> known;
   for (const StageInfo& earlier : infos_) {
     if (earlier.id == info.id)
@@ -27,6 +52,7 @@ void StageRegistry::add(Maker maker) {
     }
     known.insert(StepId(info.id, step.id));
   }
+  requireKeys(*stage);
   infos_.push_back(info);
   makers_.push_back(std::move(maker));
 }

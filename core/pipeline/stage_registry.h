@@ -17,7 +17,8 @@ namespace beam {
 class StageRegistry {
  public:
   using Maker = std::function<std::unique_ptr<Stage>()>;
-  // Throws Error{Bug} when the id is taken or a step names an input that does not stand before it.
+  // Throws Error{Bug} when the id is taken, a step names an input that does not stand before it, or a setting
+  // that changes results enters no key (entersKey): changed, it would be answered with old results.
   void add(Maker maker);
   // In order of adding.
   const std::vector<StageInfo>& infos() const { return infos_; }

@@ -53,6 +53,7 @@ struct FakeOptions {
   int batch = 64;
   std::string solver = "plain";
   double reach = 1;
+  bool refines = false, follows = false;  // whether the stage has a step for the group
 };
 inline void describe(Fields& f, FakeOptions& o) {
   f.field({.name = "iterations", .label = "Iterations", .help = "Steps.", .min = 1, .max = 1000},
@@ -65,13 +66,17 @@ inline void describe(Fields& f, FakeOptions& o) {
            .effect = Effect::SpeedOnly},
           o.batch);
   f.field({.name = "solver", .label = "Solver", .help = "Way.", .choices = {"plain", "fancy"}}, o.solver);
-  f.group("later", [&] {
-    f.field({.name = "reach", .label = "Reach", .help = "Of motion.", .min = 0, .max = 9}, o.reach);
-  });
-  f.group("refine", [&] {
-    f.field({.name = "normal_weight", .label = "Normals", .help = "Weight.", .min = 0, .max = 1},
-            o.normal_weight);
-  });
+  if (o.follows) {
+    f.group("later", [&] {
+      f.field({.name = "reach", .label = "Reach", .help = "Of motion.", .min = 0, .max = 9}, o.reach);
+    });
+  }
+  if (o.refines) {
+    f.group("refine", [&] {
+      f.field({.name = "normal_weight", .label = "Normals", .help = "Weight.", .min = 0, .max = 1},
+              o.normal_weight);
+    });
+  }
 }
 
 // Called at the start of every step with its frame; may throw, sleep, or look.
@@ -83,7 +88,12 @@ struct FakeHooks {
 
 class FakeStage final : public StageOf<FakeOptions> {
  public:
-  FakeStage(StageInfo info, FakeHooks& hooks) : info_(std::move(info)), hooks_(hooks) {}
+  FakeStage(StageInfo info, FakeHooks& hooks) : info_(std::move(info)), hooks_(hooks) {
+    for (const StepInfo& step : info_.steps) {
+      options_.refines |= step.id == "refine";
+      options_.follows |= !step.later.empty();
+    }
+  }
   const StageInfo& info() const override { return info_; }
   void run(std::string_view step, StepContext& c) const override {
     const StepId id(info_.id, step);

@@ -44,6 +44,10 @@ void add(const std::vector<StepInfo>& steps, const Setting& setting) {
   registry.add([=] { return std::make_unique<OneSetting>(steps, setting); });
 }
 
+const std::vector<StepInfo> kOneStep = {{.id = "import", .title = "Import"}};
+const std::vector<StepInfo> kWithLater = {
+    {.id = "import", .title = "Import", .later = {.previous = {"light.import"_step}}}};
+
 TEST(StepId, IsAStageAndANameAndComesFromTextOnlyWhereThatIsSaid) {
   const StepId step("surface", "fit");
   EXPECT_EQ(step, "surface.fit"_step);
@@ -53,6 +57,27 @@ TEST(StepId, IsAStageAndANameAndComesFromTextOnlyWhereThatIsSaid) {
   EXPECT_TRUE(StepId().empty());
   EXPECT_EQ(StepId("surface").name(), "");
   static_assert(!std::is_convertible_v<std::string, StepId> && !std::is_convertible_v<StepId, std::string>);
+}
+
+TEST(StageRegistry, TakesSettingsThatEnterAKey) {
+  EXPECT_NO_THROW(add(kOneStep, {}));
+  EXPECT_NO_THROW(add(kOneStep, {.group = "import"}));
+  EXPECT_NO_THROW(add(kWithLater, {.group = "later"}));
+}
+
+TEST(StageRegistry, RefusesASettingThatChangesResultsAndEntersNoKey) {
+  const auto refusal = [](const std::vector<StepInfo>& steps, const Setting& setting) {
+    return messageOf(Error::Kind::Bug, [&] { add(steps, setting); });
+  };
+  EXPECT_THAT(refusal(kOneStep, {.group = "polish"}),
+              AllOf(HasSubstr("stage light"), HasSubstr("\"polish\""), HasSubstr("\"gain\"")));
+  EXPECT_THAT(refusal(kOneStep, {.group = "later"}), HasSubstr("\"later\"")) << "no step has later frames";
+  EXPECT_THAT(refusal({}, {}), HasSubstr("\"gain\"")) << "a stage without steps";
+}
+
+TEST(StageRegistry, LetsOtherSettingsStandWhereverTheyLike) {
+  EXPECT_NO_THROW(add(kOneStep, {.group = "polish", .effect = Effect::SpeedOnly}));
+  EXPECT_NO_THROW(add({}, {.effect = Effect::LaterResults}));
 }
 
 TEST(StageRegistry, RefusesAStepThatReadsWhatDoesNotStandBeforeIt) {
