@@ -63,7 +63,7 @@ class CpuSceneRenderer final : public SceneRenderer {
   const RendererAbilities& abilities() const override { return abilities_; }
 
  private:
-  void doLoad(const RenderScene& scene) override {
+  void doLoad(const RenderScene& scene, const Progress& progress) override {
     if (scene.instances != instances_ || !instances_loaded_) {
       instances_loaded_ = false;
       view_ = nullptr;
@@ -73,7 +73,7 @@ class CpuSceneRenderer final : public SceneRenderer {
     }
     environment_ = scene.lighting.environment;
     if (scene.environment == panorama_) return;
-    light_ = scene.environment ? lights_->of(scene.environment) : nullptr;
+    light_ = scene.environment ? lights_->of(scene.environment, progress) : nullptr;
     panorama_ = scene.environment;
   }
 

@@ -124,16 +124,18 @@ vec3 convolvedAt(const Image<vec3>& source, const Texels& texels, vec3 direction
 
 // The prefiltered radiance of one roughness; the lobe of n = v = l's mirror (Karis 2013): D(h) (n.l). Texels
 // are kept below half the lobe's width.
-Image<vec3> prefilteredLevel(const Image<vec3>& panorama, float roughness) {
+Image<vec3> prefilteredLevel(const Image<vec3>& panorama, float roughness, const Progress& progress) {
   const float alpha = ggxAlpha(roughness);
   const int out = roughness < 0.15f ? 256 : roughness < 0.35f ? 128 : 64;
   const int in = roughness < 0.15f ? 512 : roughness < 0.25f ? 256 : roughness < 0.55f ? 128 : 64;
   // tan^2 of the half vector that holds kHighlightShare of the lobe: share = t / (alpha^2 + t).
   const float tan2 = alpha * alpha * kHighlightShare / (1 - kHighlightShare);
   const float cos2_h = 1 / (1 + tan2), min_cosine = std::max(0.0f, 2 * cos2_h - 1);
-  return convolvedPanorama(reducedPanorama(panorama, in, in / 2), {out, out / 2}, min_cosine, [=](float c) {
+  const auto lobe = [=](float c) {
     return ggxDistribution(std::sqrt(0.5f * (1 + c)), alpha) * std::max(0.0f, c);
-  });
+  };
+  return convolvedPanorama(reducedPanorama(panorama, in, in / 2, progress), {out, out / 2}, min_cosine, lobe,
+                           progress);
 }
 
 }  // namespace
@@ -164,7 +166,7 @@ vec2 splitSum(float n_dot_v, float roughness) {
                   y - y0);
 }
 
-Image<vec3> reducedPanorama(const Image<vec3>& in, int width, int height) {
+Image<vec3> reducedPanorama(const Image<vec3>& in, int width, int height, const Progress& progress) {
   const int w = std::min(width, in.width), h = std::min(height, in.height);
   if (w == in.width && h == in.height) return in;
   Image<vec3> out(w, h, vec3(0), Encoding::Linear);
@@ -176,6 +178,7 @@ Image<vec3> reducedPanorama(const Image<vec3>& in, int width, int height) {
     return std::pair{begin, std::max(begin, end)};
   };
   parallelFor(h, 1, [&](std::size_t row, std::size_t) {
+    if (progress.stopRequested()) return;
     const int y = static_cast<int>(row);
     const int y0 = y * in.height / h, y1 = std::min(in.height, (y + 1) * in.height / h + 1);
     for (int x = 0; x < w; ++x) {
@@ -195,19 +198,22 @@ Image<vec3> reducedPanorama(const Image<vec3>& in, int width, int height) {
       out(x, y) = vec3(sum / weight);
     }
   });
+  progress.check();
   return out;
 }
 
 Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min_cosine,
-                              const std::function<float(float)>& kernel) {
+                              const std::function<float(float)>& kernel, const Progress& progress) {
   const Texels texels(panorama.width, panorama.height), targets(size.x, size.y);
   const KernelTable table(kernel, min_cosine);
   Image<vec3> out(size.x, size.y, vec3(0), Encoding::Linear);
   parallelFor(out.pixels.size(), 64, [&](std::size_t begin, std::size_t end) {
+    if (progress.stopRequested()) return;
     for (std::size_t i = begin; i < end; ++i) {
       out.pixels[i] = convolvedAt(panorama, texels, targets.direction[i], min_cosine, table);
     }
   });
+  progress.check();
   return out;
 }
 
@@ -220,14 +226,15 @@ vec3 lookUp(const Image<vec3>& r, vec2 uv) {
                   y - y0);
 }
 
-PreparedLight prepareLight(const Environment& environment) {
+PreparedLight prepareLight(const Environment& environment, const Progress& progress) {
   PreparedLight light;
   light.radiance = environment.radiance;
   for (vec3& p : light.radiance.pixels) p *= environment.gain;
   light.yaw_rad = environment.yaw_rad;
   light.irradiance_sh = irradianceSh(Environment{light.radiance});
-  Image<vec3> map =
-      convolvedPanorama(reducedPanorama(light.radiance, 128, 64), {128, 64}, 0.0f, [](float c) { return c; });
+  Image<vec3> map = convolvedPanorama(
+      reducedPanorama(light.radiance, 128, 64, progress), {128, 64}, 0.0f, [](float c) { return c; },
+      progress);
   float worst = 0, mean = 0;
   for (std::size_t i = 0; i < map.pixels.size(); ++i) {
     map.pixels[i] *= kPi;
@@ -238,7 +245,8 @@ PreparedLight prepareLight(const Environment& environment) {
   }
   if (worst > kShTolerance * mean) light.irradiance_map = std::move(map);
   light.levels.resize(kLevels);
-  for (int i = 1; i < kLevels; ++i) light.levels[i] = prefilteredLevel(light.radiance, i / (kLevels - 1.0f));
+  for (int i = 1; i < kLevels; ++i)
+    light.levels[i] = prefilteredLevel(light.radiance, i / (kLevels - 1.0f), progress);
   return light;
 }
 
@@ -259,8 +267,8 @@ vec3 prefiltered(const PreparedLight& light, vec3 direction, float roughness) {
   return glm::mix(lookUp(sharp, uv), lookUp(light.levels[below + 1], uv), level - static_cast<float>(below));
 }
 
-std::shared_ptr<const PreparedLight> PreparedLights::of(
-    const std::shared_ptr<const Environment>& environment) {
+std::shared_ptr<const PreparedLight> PreparedLights::of(const std::shared_ptr<const Environment>& environment,
+                                                        const Progress& progress) {
   const auto found = [&]() -> std::shared_ptr<const PreparedLight> {
     std::erase_if(all_, [](const auto& entry) { return entry.first.expired(); });
     for (const auto& [known, light] : all_)
@@ -271,7 +279,7 @@ std::shared_ptr<const PreparedLight> PreparedLights::of(
     const std::lock_guard lock(mutex_);
     if (auto light = found()) return light;
   }
-  auto light = std::make_shared<const PreparedLight>(prepareLight(*environment));
+  auto light = std::make_shared<const PreparedLight>(prepareLight(*environment, progress));
   const std::lock_guard lock(mutex_);
   if (auto other = found()) return other;  // of a thread that was faster
   all_.emplace_back(environment, light);

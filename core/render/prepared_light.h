@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/image/image.h"
 #include "core/scene/environment.h"
 
@@ -27,7 +28,8 @@ struct PreparedLight {
   std::vector<Image<vec3>> levels;
 };
 
-PreparedLight prepareLight(const Environment& environment);
+// Throws Cancelled when the progress is stopped.
+PreparedLight prepareLight(const Environment& environment, const Progress& progress = Progress{});
 
 // From the world into the panorama's axes; `yaw_rad` comes on top of the environment's own.
 class LightTurn {
@@ -47,7 +49,9 @@ vec3 prefiltered(const PreparedLight& light, vec3 direction, float roughness);
 // environment. Thread-safe.
 class PreparedLights {
  public:
-  std::shared_ptr<const PreparedLight> of(const std::shared_ptr<const Environment>& environment);
+  // Throws Cancelled when the progress is stopped while it prepares, and keeps nothing then.
+  std::shared_ptr<const PreparedLight> of(const std::shared_ptr<const Environment>& environment,
+                                          const Progress& progress = Progress{});
 
  private:
   std::mutex mutex_;
@@ -61,12 +65,15 @@ vec2 splitSum(float n_dot_v, float roughness);
 // of the first and the last texel.
 const Image<vec2>& splitSumTable();
 
-// The panorama as another of width x height texels, each the mean over its solid angle; never enlarges.
-Image<vec3> reducedPanorama(const Image<vec3>& panorama, int width, int height);
+// Both throw Cancelled when the progress is stopped. The panorama as another of width x height texels, each
+// the mean over its solid angle; never enlarges.
+Image<vec3> reducedPanorama(const Image<vec3>& panorama, int width, int height,
+                            const Progress& progress = Progress{});
 
 // out(d) = integral of panorama(w) kernel(d . w) / integral of kernel; the kernel is 0 below `min_cosine`.
 Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min_cosine,
-                              const std::function<float(float)>& kernel);
+                              const std::function<float(float)>& kernel,
+                              const Progress& progress = Progress{});
 
 // Bilinear look-up at a texture position (scene/environment.h) or a unit direction.
 vec3 lookUp(const Image<vec3>& panorama, vec2 uv);

@@ -69,9 +69,9 @@ std::vector<std::string> leftOut(const RenderScene& scene, const RendererAbiliti
   return sentences;
 }
 
-std::vector<std::string> SceneRenderer::load(const RenderScene& scene) {
+std::vector<std::string> SceneRenderer::load(const RenderScene& scene, const Progress& progress) {
   loaded_ = false;
-  doLoad(scene);
+  doLoad(scene, progress);
   scene_ = scene;
   loaded_ = true;
   return leftOut(scene, abilities());

@@ -65,7 +65,8 @@ class SceneRenderer {
   virtual const RendererAbilities& abilities() const = 0;
 
   // What is drawn from now on; costs what is new in it. Returns what of it will not be seen, a sentence each.
-  std::vector<std::string> load(const RenderScene& scene);
+  // Throws Cancelled when the progress is stopped, and must be called again then.
+  std::vector<std::string> load(const RenderScene& scene, const Progress& progress = Progress{});
 
   // Calls `onPicture` once, or more often where it refines, the last time with `final`. Throws Error{Usage}
   // for a channel that it does not draw, Error{Bug} for one that the scene lacks what it needs (lackOf) or
@@ -74,7 +75,7 @@ class SceneRenderer {
             const OnPicture& on_picture);
 
  private:
-  virtual void doLoad(const RenderScene& scene) = 0;
+  virtual void doLoad(const RenderScene& scene, const Progress& progress) = 0;
   virtual void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
                       const OnPicture& on_picture) = 0;
 

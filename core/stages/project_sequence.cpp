@@ -262,8 +262,8 @@ std::shared_ptr<const GaussianSequence> sequenceOf(const Project& project, Shows
 }
 
 bool anySolved(const TakeSurvey& survey) {
-  return std::any_of(kFrameSteps.begin(), kFrameSteps.end(), [&](const char* step) {
-    const SurveyCurve* seconds = survey.curve(std::string(step) + ".seconds");  // of every finished one
+  return std::any_of(kFrameSteps.begin(), kFrameSteps.end(), [&](const StepId& step) {
+    const SurveyCurve* seconds = survey.curve(step.text() + ".seconds");  // of every finished one
     return seconds && std::any_of(seconds->values.begin(), seconds->values.end(),
                                   [](double v) { return !std::isnan(v); });
   });

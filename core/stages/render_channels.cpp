@@ -137,7 +137,7 @@ class ChannelWriter {
   void draw(const RenderScene& scene, const View& view, const std::string& name,
             std::span<const ChannelInfo> channels, const std::vector<std::string>& folders,
             Progress& progress) {
-    renderer_.load(scene);
+    renderer_.load(scene, progress);
     renderer_.draw(view.camera, channels, progress, [&](const RenderedPicture& picture) {
       if (!picture.final) return;
       for (std::size_t i = 0; i < channels.size(); ++i) {

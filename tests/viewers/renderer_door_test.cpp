@@ -81,7 +81,7 @@ class RefiningRenderer final : public SceneRenderer {
   const RendererAbilities& abilities() const override { return abilities_; }
 
  private:
-  void doLoad(const RenderScene&) override {}
+  void doLoad(const RenderScene&, const Progress&) override {}
   void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
               const OnPicture& on_picture) override {
     for (int i = 1; i <= 3; ++i) {
@@ -121,7 +121,7 @@ class TextureRenderer final : public SceneRenderer {
   const RendererAbilities& abilities() const override { return abilities_; }
 
  private:
-  void doLoad(const RenderScene&) override { currentGl(); }
+  void doLoad(const RenderScene&, const Progress&) override { currentGl(); }
   void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress&,
               const OnPicture& on_picture) override {
     release();
@@ -280,7 +280,7 @@ TEST(AnyRenderer, IsNamedWithWhatItDoesNotDraw) {
     const RendererAbilities& abilities() const override { return abilities_; }
 
    private:
-    void doLoad(const RenderScene&) override {}
+    void doLoad(const RenderScene&, const Progress&) override {}
     void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress&,
                 const OnPicture& on_picture) override {
       RenderedPicture picture;

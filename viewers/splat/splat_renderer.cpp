@@ -72,7 +72,7 @@ void SplatRenderer::render(const SplatRequest& r, Progress& progress, const OnPi
   frame.channel = dark ? channelOf(kRgbChannel) : r.channel;
   if (!loaded_ || r.scene != scene_) {
     loaded_ = false;
-    left_out_ = renderer_->load(r.scene);
+    left_out_ = renderer_->load(r.scene, progress);
     scene_ = r.scene;
     loaded_ = true;
   }

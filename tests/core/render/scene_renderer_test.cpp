@@ -229,6 +229,20 @@ TEST(SceneRenderer, StopsWhenItIsTold) {
                Cancelled);
 }
 
+TEST(PreparedLights, KeepNothingOfWhatWasStopped) {
+  PreparedLights lights;
+  const auto sky = gradientSky();
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(lights.of(sky, Progress(stop.get_token())), Cancelled);
+  const auto light = lights.of(sky);
+  EXPECT_EQ(light->levels.back().width, 64);
+  const auto renderer = newCpuSceneRenderer(makeCpuDevice());
+  EXPECT_THROW(renderer->load(litBall(), Progress(stop.get_token())), Cancelled);
+  renderer->load(litBall());
+  EXPECT_NE(channelIn(drawn(*renderer, kCamera, {channelOf(kRelightChannel)}), kRelightChannel), nullptr);
+}
+
 TEST(PreparedLights, AreSharedAndForgottenWithTheirPanoramas) {
   PreparedLights lights;
   auto sky = gradientSky();

@@ -11,6 +11,7 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/pipeline/take_survey.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
 #include "core/stages/result_files.h"
@@ -198,14 +199,15 @@ TEST(ProjectSequence, AnswersSeveralThreadsAtOnceAndAlike) {
 
 TEST(InterpolatedFrame, IsRenderedOnlyWhereThatIsAskedFor) {
   const Project project = solved().project();
-  FakeDevice device;
+  const auto device = makeCpuDevice();
+  const auto renderer = newCpuSceneRenderer(*device);
   RenderRequest request;
   request.channels = {"rgb"};
   request.frames = {FrameIndex{1}};
   request.out = solved().folder() / "out";
   Progress progress;
-  EXPECT_THROW(renderChannels(*sequenceOf(project, Shows::Solved), request, device, progress), Error);
-  EXPECT_NO_THROW(renderChannels(*sequenceOf(project, Shows::Between), request, device, progress));
+  EXPECT_THROW(renderChannels(*sequenceOf(project, Shows::Solved), request, *renderer, progress), Error);
+  EXPECT_NO_THROW(renderChannels(*sequenceOf(project, Shows::Between), request, *renderer, progress));
 }
 
 TEST(InterpolatedFrame, IsDrawnAsSuchAndReadAgainWithItsNeighbours) {

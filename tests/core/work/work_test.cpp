@@ -8,9 +8,9 @@
 #include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/io/splat_ply.h"
+#include "core/render/cpu_scene_renderer.h"
 #include "core/work/evaluate.h"
 #include "core/work/export_frames.h"
-#include "core/render/cpu_scene_renderer.h"
 #include "core/work/render_frames.h"
 #include "core/work/report.h"
 #include "tests/core/work/true_copy.h"
@@ -81,13 +81,16 @@ TEST_F(Work, RenderFramesSaysWhatItDrew) {
 TEST_F(Work, RenderFramesRefusesWordsThatChooseNothing) {
   RenderFramesRequest request = pictures();
   request.channels = {"colour"};
-  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }), Error::Kind::Usage);
+  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }),
+            Error::Kind::Usage);
   request = pictures();
   request.cameras = "nobody";
-  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }), Error::Kind::Usage);
+  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }),
+            Error::Kind::Usage);
   request = pictures();
   request.frames = "77";
-  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }), Error::Kind::Usage);
+  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }),
+            Error::Kind::Usage);
   EXPECT_THAT(written(), IsEmpty());
 }
 
