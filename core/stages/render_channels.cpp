@@ -100,7 +100,7 @@ class ChannelWriter {
     if (result->interpolated) logInfo("frame {} is interpolated", name);
     RenderScene scene;
     scene.instances = {instanceOf(result, sequence_.renderMode())};
-    requireMaterials(*result, name);
+    requireWhatIsNeeded(scene, name);
     for (const View& view : request_.views) {
       pictures(scene, view, name, progress);
       progress.step();
@@ -108,12 +108,20 @@ class ChannelWriter {
   }
 
  private:
-  void requireMaterials(const GaussianFrame& frame, const std::string& name) const {
+  // The light is the request's.
+  void requireWhatIsNeeded(const RenderScene& scene, const std::string& name) const {
     for (const std::string& id : request_.channels) {
-      if (!needsMaterials(channelOf(id)) || frame.materials) continue;
-      throw Error(
-          Error::Kind::Data,
-          fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, id));
+      const ChannelInfo& channel = channelOf(id);
+      const Lack lack = lackOf(channel, scene);
+      if (lack == Lack::Materials) {
+        throw Error(
+            Error::Kind::Data,
+            fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, id));
+      }
+      if (lack == Lack::Attribute) {
+        throw Error(Error::Kind::Data, fmt::format("the Gaussians of frame {} have no \"{}\", which {} shows",
+                                                   name, channel.attribute, id));
+      }
     }
   }
 

@@ -280,7 +280,7 @@ TEST_F(Page, FitsWithLargeTypeAt480Pixels) {
 class Panel : public ::testing::Test {
  protected:
   Panel() { panel.show(); }
-  SplatView view{makeCpuDevice()};
+  SplatView view{cpuSceneRenderers(makeCpuDevice())};
   LightLibrary lights;
   DisplayPanel panel{view, lights};
 };
