@@ -85,10 +85,9 @@ int measure(const char* project) {
   for (int round = 0; round < kRounds; ++round) {
     for (int f = frames - 1; f >= 0; --f)
       frame_ms.push_back(timeUntilSettled(window, [&] { window.player().goTo(f); }));
-    for (int c = beam::kChannelCount - 1; c >= 0; --c) {
-      channel_ms.push_back(
-          timeUntilSettled(window, [&] { window.splatView().setChannel(static_cast<beam::Channel>(c)); }));
-    }
+    const auto& channels = beam::shownChannels();
+    for (auto c = channels.rbegin(); c != channels.rend(); ++c)
+      channel_ms.push_back(timeUntilSettled(window, [&] { window.splatView().setChannel(*c); }));
   }
   say("frame change", median(frame_ms));
   say("channel change", median(channel_ms));
