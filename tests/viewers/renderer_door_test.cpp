@@ -237,6 +237,23 @@ TEST(TextureRenderer, ShowsWhatValuesOfTheHostWouldShow) {
   }
 }
 
+// Else its words come out as noise.
+TEST(TextureRenderer, LeavesUploadsToQPainterAsTheyAre) {
+  const auto stage = std::make_shared<Stage>();
+  SplatView view(factory<TextureRenderer>(stage));
+  showBalls(view);
+  for (const ChannelInfo& channel : shownChannels()) {
+    view.setChannel(channel);
+    ASSERT_TRUE(waitFor([&] { return view.settled(); }));
+    view.picture();
+    view.makeCurrent();
+    GLint alignment = 0;
+    currentGl().glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment);
+    view.doneCurrent();
+    EXPECT_EQ(alignment, 4) << channel.id;
+  }
+}
+
 TEST(TextureRenderer, AnswersThePointerAndTheFocus) {
   const auto stage = std::make_shared<Stage>();
   SplatView view(factory<TextureRenderer>(stage));

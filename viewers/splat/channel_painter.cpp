@@ -32,14 +32,15 @@ void bindLinear(QOpenGLFunctions_3_3_Core& gl, GLenum unit, GLuint texture) {
 }
 
 GLuint newPalette() {
-  std::array<u8vec3, kPaletteSize> colors;
-  for (int i = 0; i < kPaletteSize; ++i) colors[i] = falseColor(static_cast<float>(i) / (kPaletteSize - 1));
+  // Four bytes a texel: the alignment of uploads stays as it is, which QPainter's glyphs count on.
+  std::array<u8vec4, kPaletteSize> colors;
+  for (int i = 0; i < kPaletteSize; ++i)
+    colors[i] = u8vec4(falseColor(static_cast<float>(i) / (kPaletteSize - 1)), 255);
   auto& gl = currentGl();
   GLuint texture = 0;
   gl.glGenTextures(1, &texture);
   gl.glBindTexture(GL_TEXTURE_2D, texture);
-  gl.glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, kPaletteSize, 1, 0, GL_RGB, GL_UNSIGNED_BYTE, colors.data());
+  gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kPaletteSize, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, colors.data());
   return texture;
 }
 
