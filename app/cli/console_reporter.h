@@ -26,7 +26,7 @@ class ConsoleReporter {
   Console& console_;
 };
 
-// Exit code of a run (contract: exit codes).
+// Exit code of a run: 0 done, 10 some frames failed, 75 interrupted and resumable, else of the failure.
 int exitCode(const JobFinished& finished);
 
 }  // namespace beam

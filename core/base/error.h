@@ -33,7 +33,7 @@ class Cancelled : public std::exception {
   const char* what() const noexcept override { return "cancelled"; }
 };
 
-// Process exit code of a failure (contract: exit codes).
+// Process exit code of a failure, by sysexits.h where it has one; scripts rely on them.
 int exitCode(Error::Kind kind);
 
 }  // namespace beam

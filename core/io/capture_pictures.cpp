@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A constant black or white border makes a key (contract: import).
+// A constant black or white border makes a key: a picture of something in front of nothing.
 std::optional<u8vec3> keyOf(const Image<u8vec3>& photo) {
   const u8vec3 first = photo(0, 0);
   if (first != u8vec3(0) && first != u8vec3(255)) return std::nullopt;

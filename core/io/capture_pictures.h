@@ -19,7 +19,7 @@ struct PictureFiles {
 // Pictures of every view, one entry a frame.
 using PictureTable = std::vector<std::vector<PictureFiles>>;
 
-// Where the mask of a picture lies (ecosystem 1.7, 1 to 4); empty: nowhere.
+// Where the mask of a picture lies, by the names that capture tools give them; empty: nowhere.
 std::filesystem::path findMask(const std::filesystem::path& root, const std::filesystem::path& picture,
                                const std::string& camera);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens a capture folder: dataset.json, then transforms.json, then sparse/ (contract: import). Read-only.
+// Opens a capture folder: dataset.json, then transforms.json, then sparse/: what says more comes first.
+// Read-only.
 #pragma once
 
 #include <filesystem>

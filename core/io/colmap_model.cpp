@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// COLMAP sparse models, binary before text (ecosystem 1.1). Pinhole kinds only.
+// COLMAP sparse models as its documentation of output formats has them, binary before text. Pinhole kinds
+// only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -92,7 +93,7 @@ void addCamera(ColmapModel& m, const std::filesystem::path& path, std::uint32_t 
   if (!m.cameras.emplace(id, c).second) bad(path, fmt::format("camera id {} stands twice", id));
 }
 
-// A name may be a camera folder, camera/frame.ext, or a plain file (contract: import).
+// A name may be a camera folder, camera/frame.ext, or a plain file: tools write all three.
 std::string cameraNameOf(const std::string& image_name) {
   const std::filesystem::path name(image_name);
   if (!isPicture(name)) return image_name;

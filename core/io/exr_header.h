@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own look at an OpenEXR header, before the library sees a byte (reliability 3.10): sizes against the
-// bytes that are there, and an allow-list of features.
+// Our own look at an OpenEXR header, before the library sees a byte: sizes against the bytes that are there
+// and an allow-list of features, for a broken or hostile file must not take memory or run old decoders.
 #pragma once
 
 #include <cstddef>

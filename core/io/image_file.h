@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG, JPEG, EXR and Radiance HDR files. Every reader checks the header's sizes against caps and against the
-// bytes that are there before it allocates (reliability 3.10), and throws Error{Data} naming file, expected
-// and found.
+// bytes that are there before it allocates, so that no file takes memory that it could not fill, and throws
+// Error{Data} naming file, expected and found.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance .hdr pictures (ecosystem 1.10): new and old run lengths, EXPOSURE lines, any of the eight
+// Radiance .hdr pictures: new and old run lengths, EXPOSURE lines, any of the eight
 // orientations.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The splat PLY dialect (ecosystem 2.1), the only file that knows its logits and logs: 62 standard columns,
+// The splat PLY dialect of 3DGS, the only file that knows its logits and logs: 62 columns that viewers read,
 // then ours (roughness, metallic, base_color_dc/rest, ao_dc/rest).
 #pragma once
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// transforms.json in the keys of NeRF, instant-ngp and nerfstudio (ecosystem 1.2): world_from_camera, OpenGL
-// camera.
+// transforms.json in the keys of NeRF, instant-ngp and nerfstudio: world_from_camera, OpenGL camera.
 #include <algorithm>
 #include <cmath>
 #include <set>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder of immutable results: published whole or not at all, verified when read, never overwritten
-// (reliability 3.3). Safe to use from several threads and processes.
+// The folder of immutable results: published whole or not at all, verified when read, never overwritten, so
+// that what was called finished survives a kill or a power cut. Safe to use from several threads and
+// processes.
 #pragma once
 
 #include <filesystem>

@@ -69,7 +69,7 @@ struct CaptureSet {
   std::shared_ptr<const FrameSource> source;
 };
 
-// world_from_capture of an up axis: a permutation with signs (contract: axes and light).
+// world_from_capture of an up axis: a permutation with signs, which turns without rounding.
 dmat3 worldFromCapture(UpAxis up);
 
 }  // namespace beam

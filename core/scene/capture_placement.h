@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a capture lies in the world: its unit and its origin, and the rule that finds them (contract: axes
-// and light). A capture in metres near its origin is only turned.
+// Where a capture lies in the world: its unit and its origin, and the rule that finds them, so that
+// results do not depend on either. A capture in metres near its origin is only turned.
 #pragma once
 
 #include <optional>

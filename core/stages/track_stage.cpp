@@ -23,7 +23,7 @@ constexpr double kSeedShare = 0.4;                 // seeds as a share of the jo
 struct TrackOptions {
   TrackJointsOptions joints;
   double restart_ratio = 4;  // ours (methods 3.8: off in the paper's code)
-  int segment_frames = 50;   // reliability 3.5
+  int segment_frames = 50;   // ours: what a fault or a second machine can repeat or take over
   int overlap = 4;           // ours: with 2 the seam is 0.3 dB below the uncut take, with 4 it is gone
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `beam` says and returns when something is wrong (contract: exit codes).
+// What `beam` says and returns when something is wrong; scripts rely on the codes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -2,18 +2,17 @@
 // The law of the house: who may include whom, which foreign words live where, and how long a file may be.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/house/sources.h"
+
+namespace beam::testing {
 namespace {
 
-namespace fs = std::filesystem;
 using Rooms = std::set<std::string>;
 
 // A room may include itself and these.
@@ -53,31 +52,16 @@ std::string roomOf(const std::string& path) {
   return second == std::string::npos ? path : path.substr(0, second);
 }
 
-struct Source {
-  std::string path;  // relative to the root
-  std::vector<std::string> lines, includes;
-};
+std::vector<Source> sources() { return sourcesIn({"core", "viewers", "ui", "app", "plugins"}); }
 
-std::vector<Source> sources() {
+std::vector<std::string> includesOf(const Source& source) {
   static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
-  std::vector<Source> found;
-  const fs::path root = BEAM_SOURCE_DIR;
-  for (const char* folder : {"core", "viewers", "ui", "app", "plugins"}) {
-    if (!fs::exists(root / folder)) continue;
-    for (const auto& e : fs::recursive_directory_iterator(root / folder)) {
-      const std::string extension = e.path().extension().string();
-      if (extension != ".h" && extension != ".cpp") continue;
-      Source s{fs::relative(e.path(), root).string(), {}, {}};
-      std::ifstream in(e.path());
-      for (std::string line; std::getline(in, line);) {
-        std::smatch m;
-        if (std::regex_search(line, m, kInclude)) s.includes.push_back(m[1]);
-        s.lines.push_back(line);
-      }
-      found.push_back(std::move(s));
-    }
+  std::vector<std::string> includes;
+  for (const std::string& line : source.lines) {
+    std::smatch m;
+    if (std::regex_search(line, m, kInclude)) includes.push_back(m[1]);
   }
-  return found;
+  return includes;
 }
 
 bool startsWith(const std::string& s, const std::vector<std::string>& stems) {
@@ -92,7 +76,7 @@ TEST(IncludeLaw, ARoomIncludesOnlyWhatStandsBelowIt) {
     const std::string room = roomOf(s.path);
     const auto law = allowed().find(room);
     if (law == allowed().end()) continue;  // app may include everything
-    for (const std::string& i : s.includes) {
+    for (const std::string& i : includesOf(s)) {
       if (!startsWith(i, {"core/", "viewers/", "ui/", "app/", "plugins/", "tests/"})) continue;
       const std::string other = roomOf(i);
       EXPECT_TRUE(other == room || law->second.contains(other)) << s.path << " includes " << i;
@@ -122,7 +106,7 @@ TEST(IncludeLaw, ForeignWordsStayInTheirRooms) {
       {{"CLI/"}, {"app/"}},
   };
   for (const Source& s : sources()) {
-    for (const std::string& i : s.includes) {
+    for (const std::string& i : includesOf(s)) {
       for (const Word& w : words) {
         if (!startsWith(i, w.stems)) continue;
         EXPECT_TRUE(startsWith(s.path, w.places)) << s.path << " includes " << i;
@@ -136,7 +120,7 @@ TEST(IncludeLaw, ForeignWordsStayInTheirRooms) {
 TEST(IncludeLaw, KernelsDoNotKnowGlm) {
   for (const Source& s : sources()) {
     if (s.path.rfind("core/render/kernels/", 0) != 0) continue;
-    for (const std::string& i : s.includes)
+    for (const std::string& i : includesOf(s))
       EXPECT_FALSE(startsWith(i, {"glm/", "core/math/types.h"})) << s.path;
   }
 }
@@ -153,3 +137,4 @@ TEST(House, EveryFileNamesItsLicence) {
 }
 
 }  // namespace
+}  // namespace beam::testing

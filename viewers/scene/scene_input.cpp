@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mouse, keys and camera of the scene view: those of the splat view (product 4.6, 4.10), by the same orbit.
+// Mouse, keys and camera of the scene view: those of the splat view, by the same orbit.
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>
 #include <vtkTransform.h>

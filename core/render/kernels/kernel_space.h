@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where kernel formulas live (contract 8). A file that defines BEAM_KERNELS_SIMD and includes
+// Where kernel formulas live. A plain template of Highway vectors in an ordinary header will not do: GCC
+// refuses it at -O2 and is silently wrong at -O0. A file that defines BEAM_KERNELS_SIMD and includes
 // hwy/foreach_target.h reads every kernel header once an instruction set, in beam::<target>; any other file
 // reads it once, in beam::scalar, with plain floats, doubles or arrays.
 #include <bit>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lanes: a pack of 16 floats with operators, one formula for AVX-512 (one vector), AVX2 (two) and plain
-// arrays; all three give the same bits: explicit fma, exact division and square root, sums of a fixed shape
-// (contract 7 and 8). Include between the passes of hwy/foreach_target.h (toggling guard) in files that
-// define BEAM_KERNELS_SIMD; elsewhere the array form in beam::scalar is what one gets. Never pass Lanes
-// across files.
+// arrays; all three give the same bits: explicit fma, exact division and square root, sums of a fixed shape,
+// so that a result is the same on every machine. Include between the passes of hwy/foreach_target.h (toggling
+// guard) in files that define BEAM_KERNELS_SIMD; elsewhere the array form in beam::scalar is what one gets.
+// Never pass Lanes across files.
 #include "core/render/kernels/kernel_space.h"
 
 #ifdef BEAM_KERNELS_SIMD

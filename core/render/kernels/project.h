@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One Gaussian seen by one camera: screen ellipse, colour, depth surface and normal
-// (methods 1.2-1.3, 2.1-2.3), and the gradients of all of them (1.7-1.9, 2.5). Templates over F: Lanes, float
-// or double. Include like lanes.h.
+// (methods 1.2-1.3, 2.1-2.3), and the gradients of all of them (methods 1.7-1.9, 2.5). Templates over F:
+// Lanes, float or double. Include like lanes.h.
 #include "core/render/kernels/lanes.h"
 
 #ifdef BEAM_KERNELS_SIMD

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate before the OpenEXR library: what it lets pass, and that everything else is refused by name
-// (reliability 3.10).
+// The gate before the OpenEXR library: what it lets pass, and that everything else is refused by name.
 #include "core/io/exr_header.h"
 
 #include <fmt/format.h>

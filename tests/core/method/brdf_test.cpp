@@ -168,8 +168,8 @@ TEST(RayOffset, StartsTheRayAlongTheNormal) {
   integrate(std::vector{pointSeenAt(0)}, {.offset_m = 0.05f}, uniformLight(), probe);
 }
 
-// A panorama with one bright texel lights the side of a ball that the data sets' own formula names (contract
-// 4): d = (cos el cos az, cos el sin az, sin el), az = pi - 2 pi u, el = pi/2 - pi v in a capture with +Z up.
+// A panorama with one bright texel lights the side of a ball that the data sets' own formula names: d = (cos
+// el cos az, cos el sin az, sin el), az = pi - 2 pi u, el = pi/2 - pi v in a capture with +Z up.
 TEST(OneBrightTexel, LightsTheSideThatTheCaptureStates) {
   const dmat3 world_from_capture = worldFromCapture(UpAxis::PlusZ);
   for (const ivec2& texel : {ivec2(3, 10), ivec2(20, 5), ivec2(31, 8), ivec2(50, 12)}) {

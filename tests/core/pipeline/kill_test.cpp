@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // kill -9 at any moment, and several writers at once: nothing that was acknowledged is lost, nothing
-// half-written is seen, and the bytes are those of an undisturbed run (reliability 2.1, KILL-1).
+// half-written is seen, and the bytes are those of an undisturbed run.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visibility: the cases of methods 11.3, closed forms of 11.2 on occluders of overlapping splats,
+// Visibility: the cases of methods 11.3, closed forms of methods 11.2 on occluders of overlapping splats,
 // independence of order, brute-force loops, and one occluded set from every tracer and instruction set.
 #include "core/render/tracer.h"
 

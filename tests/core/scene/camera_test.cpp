@@ -119,7 +119,7 @@ TEST(CaptureAxes, AreTurnedIntoTheHousesWithoutAMirror) {
   }
 }
 
-TEST(CaptureAxes, GoWhereTheContractSays) {
+TEST(CaptureAxes, ArePermutationsOfTheCapturesOwn) {
   const dvec3 p(1, 2, 3);
   EXPECT_EQ(worldFromCapture(UpAxis::PlusY) * p, p);
   EXPECT_EQ(worldFromCapture(UpAxis::PlusZ) * p, dvec3(2, 3, 1)) << "x = y, y = z, z = x of the capture";
