@@ -38,6 +38,14 @@ std::vector<FrameLabel> labelled(const std::vector<std::string>& names) {
   return labels;
 }
 
+std::shared_ptr<const GaussianFrame> solvedFrame(const GaussianSequence& sequence, FrameIndex frame) {
+  std::shared_ptr<const GaussianFrame> loaded = sequence.load(frame);
+  if (!loaded)
+    throw Error(Error::Kind::Data,
+                fmt::format("frame {} is not solved yet: run it first", nameOf(sequence, frame)));
+  return loaded;
+}
+
 std::vector<std::string> namesOf(const GaussianSequence& sequence) {
   std::vector<std::string> names;
   names.reserve(sequence.frames().size());

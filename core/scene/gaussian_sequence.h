@@ -104,6 +104,8 @@ class GaussianSequence {
 // The number in a frame's name: its last run of digits ("frame_0012" -> 12); -1 without digits.
 long long frameNumber(std::string_view name);
 std::vector<FrameLabel> labelled(const std::vector<std::string>& names);
+// What load() gives; throws Error{Data} where the frame has no Gaussians.
+std::shared_ptr<const GaussianFrame> solvedFrame(const GaussianSequence& sequence, FrameIndex frame);
 std::vector<std::string> namesOf(const GaussianSequence& sequence);
 inline const std::string& nameOf(const GaussianSequence& sequence, FrameIndex frame) {
   return sequence.frames()[static_cast<std::size_t>(frame.value)].name;

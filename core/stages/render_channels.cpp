@@ -94,9 +94,7 @@ class ChannelWriter {
     if (mesh_) mesh(frame, name);
     if (drawn_.empty() && lights_.empty())
       return progress.step(static_cast<std::int64_t>(request_.views.size()));
-    const std::shared_ptr<const GaussianFrame> result = sequence_.load(frame);
-    if (!result)
-      throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", name));
+    const std::shared_ptr<const GaussianFrame> result = solvedFrame(sequence_, frame);
     if (result->interpolated) logInfo("frame {} is interpolated", name);
     RenderScene scene;
     scene.instances = {instanceOf(result, sequence_.renderMode())};

@@ -116,11 +116,7 @@ EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, ComputeDevice& devi
   std::vector<PictureScore> all;
   for (const FrameIndex frame : frames) {
     Progress part = progress.part(0.8 / static_cast<double>(frames.size()), "score");
-    const std::shared_ptr<const GaussianFrame> result = sequence->load(frame);
-    if (!result) {
-      throw Error(Error::Kind::Data,
-                  fmt::format("frame {} is not solved yet: run it first", nameOf(*sequence, frame)));
-    }
+    const std::shared_ptr<const GaussianFrame> result = solvedFrame(*sequence, frame);
     for (const ViewScore& v : scoreViews(loadFrameViews(capture, frame, Split::Test, 1, part), true,
                                          result->cloud, device, part)) {
       Scores& own = e.each[nameOf(*sequence, frame)][v.camera];

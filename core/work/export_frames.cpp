@@ -70,9 +70,7 @@ ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   progress.expect(static_cast<std::int64_t>(frames.size()));
   for (const FrameIndex frame : frames) {
     const FrameLabel& label = sequence->frames()[static_cast<std::size_t>(frame.value)];
-    const std::shared_ptr<const GaussianFrame> r = sequence->load(frame);
-    if (!r)
-      throw Error(Error::Kind::Data, fmt::format("frame {} is not solved yet: run it first", label.name));
+    const std::shared_ptr<const GaussianFrame> r = solvedFrame(*sequence, frame);
     progress.check();
     outcome.files.push_back(
         request.out / fmt::format("frame.{:06}.{}", std::max(0LL, label.number), format.info.extension));
