@@ -8,14 +8,13 @@
 #include "core/base/error.h"
 #include "core/io/image_file.h"
 #include "core/render/scene_renderer.h"
+#include "core/scene/gbuffer.h"
 #include "core/stages/result_files.h"
 #include "core/stages/step_ids.h"
 #include "viewers/splat/splat_view.h"
 
 namespace beam {
 namespace {
-
-constexpr float kVisible = 1 / 255.0f;
 
 // A channel as a picture: of what is blended the surface's own value, of colours what is seen.
 Picture pictureOf(const ChannelInfo& channel, const Planes& values, const Planes& alpha, std::string label) {
@@ -28,7 +27,7 @@ Picture pictureOf(const ChannelInfo& channel, const Planes& values, const Planes
   if (channel.quantity == Quantity::Color || !channel.times_alpha) return p;
   for (std::size_t i = 0; i < p.values.values.size(); ++i) {
     const float cover = alpha.values[i % alpha.planeSize()];
-    p.values.values[i] = cover < kVisible ? 0 : values.values[i] / cover;
+    p.values.values[i] = cover < kVisibleAlpha ? 0 : values.values[i] / cover;
   }
   return p;
 }

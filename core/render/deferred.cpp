@@ -13,8 +13,6 @@
 namespace beam {
 namespace {
 
-constexpr float kVisible = 1 / 255.0f;
-constexpr float kOpaque = 0.5f;  // with less, depth says nothing
 constexpr float kDiffuseShare =
     0.955f;                          // k_d: what (1 - F) leaves, averaged over the hemisphere (methods 7.2)
 constexpr float kDegenerate = 0.1f;  // |sum w n| below this share of alpha is no normal (methods 7.1)
@@ -116,7 +114,7 @@ void RasterView::alpha(Planes& out) const { out = images_.alpha; }
 void RasterView::depth(Planes& out) const {
   shape(images_.alpha, 1, out);
   forPixels(out.width, out.height, [&](int, int, std::size_t i) {
-    out.values[i] = images_.alpha.values[i] >= kOpaque ? images_.median_depth.values[i] : 0;
+    out.values[i] = images_.alpha.values[i] >= kDepthAlpha ? images_.median_depth.values[i] : 0;
   });
 }
 
@@ -125,7 +123,8 @@ void RasterView::normal(Planes& out) const {
   const Rays rays(camera_);
   forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
     const float alpha = images_.alpha.values[i];
-    put(out, i, alpha >= kVisible ? resolveNormal(triple(images_.normal, i), alpha, rays, x, y) : vec3(0));
+    put(out, i,
+        alpha >= kVisibleAlpha ? resolveNormal(triple(images_.normal, i), alpha, rays, x, y) : vec3(0));
   });
 }
 
@@ -163,7 +162,7 @@ void RasterView::relit(const PreparedLight& light, const ShadeOptions& options, 
   const LightTurn turn(light, options.yaw_rad);
   forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
     const float alpha = images_.alpha.values[i];
-    if (alpha < kVisible) return put(out, i, vec3(0));
+    if (alpha < kVisibleAlpha) return put(out, i, vec3(0));
     const vec3 base_color = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
     const Surface s =
         surfaceOf(base_color, clampedShare(extra(kOcclusion)[i]), clampedShare(extra(kRoughness)[i]), alpha,
@@ -189,8 +188,8 @@ GBuffer RasterView::gbuffer() const {
     const float alpha = images_.alpha.values[i];
     g.alpha.pixels[i] = alpha;
     g.radiance.pixels[i] = triple(images_.color, i);
-    if (alpha >= kOpaque) g.depth_m.pixels[i] = images_.median_depth.values[i];
-    if (alpha >= kVisible)
+    if (alpha >= kDepthAlpha) g.depth_m.pixels[i] = images_.median_depth.values[i];
+    if (alpha >= kVisibleAlpha)
       g.normal_world.pixels[i] = resolveNormal(triple(images_.normal, i), alpha, rays, x, y);
     if (!materials_) return;
     g.base_color.pixels[i] = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
@@ -239,7 +238,7 @@ Image<vec3> shade(const GBuffer& g, const Camera& camera, const PreparedLight& l
   Image<vec3> out(g.alpha.width, g.alpha.height, vec3(0), Encoding::Linear);
   forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
     const float alpha = g.alpha.pixels[i];
-    if (alpha < kVisible) return;
+    if (alpha < kVisibleAlpha) return;
     const Surface s = surfaceOf(g.base_color.pixels[i], g.ambient_occlusion.pixels[i], g.roughness.pixels[i],
                                 alpha, g.normal_world.pixels[i], rays.toEye(x, y));
     out.pixels[i] = options.exposure * alpha * radiance(s, light, turn, options);

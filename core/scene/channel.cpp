@@ -7,11 +7,10 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/scene/gbuffer.h"
 
 namespace beam {
 namespace {
-
-constexpr float kVisible = 1 / 255.0f;  // less is no surface
 
 std::vector<ChannelInfo> table() {
   using enum Quantity;
@@ -59,7 +58,7 @@ std::vector<ChannelInfo> table() {
        .key = 6,
        .quantity = Direction,
        .times_alpha = false,
-       .least_alpha = kVisible},
+       .least_alpha = kVisibleAlpha},
       {.id = kDepthChannel,
        .title = "Depth",
        .legend = "metres along the optical axis",
@@ -68,7 +67,7 @@ std::vector<ChannelInfo> table() {
        .unit = "m",
        .file = FileForm::FloatExr,
        .times_alpha = false,
-       .least_alpha = 0.5f,
+       .least_alpha = kDepthAlpha,
        .false_color = true},
       {.id = kAlphaChannel, .title = "Alpha", .legend = "0 to 1, grey", .file = FileForm::Png},
       {.id = kMeshChannel,

@@ -6,10 +6,13 @@
 
 namespace beam {
 
+inline constexpr float kVisibleAlpha = 1 / 255.0f;  // with less there is no surface
+inline constexpr float kDepthAlpha = 0.5f;          // with less, depth says nothing
+
 struct GBuffer {
   Image<float> alpha;              // coverage, [0, 1]
-  Image<float> depth_m;            // median z along the optical axis, 0 where alpha < 0.5
-  Image<vec3> normal_world;        // unit, 0 where alpha < 1/255
+  Image<float> depth_m;            // median z along the optical axis, 0 where alpha < kDepthAlpha
+  Image<vec3> normal_world;        // unit, 0 where alpha < kVisibleAlpha
   Image<vec3> radiance;            // sRGB-encoded, composited on black
   Image<vec3> base_color;          // linear, composited on black: value x alpha
   Image<float> ambient_occlusion;  // value x alpha

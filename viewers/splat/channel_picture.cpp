@@ -8,12 +8,11 @@
 
 #include "core/base/parallel.h"
 #include "core/math/color.h"
+#include "core/scene/gbuffer.h"
 #include "viewers/encode.h"
 
 namespace beam {
 namespace {
-
-constexpr float kVisible = 1 / 255.0f;
 
 // Data shown as it is (0 black, 1 white), over the encoded backdrop.
 u8vec4 overBackdrop(vec3 shown, float alpha) {
@@ -23,18 +22,18 @@ u8vec4 overBackdrop(vec3 shown, float alpha) {
 
 vec3 triple(const Planes& p, std::size_t i) { return {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]}; }
 
-// Of the surface, where alpha is at least kVisible.
+// Of the surface, where alpha is at least kVisibleAlpha.
 float surfaceValue(const ChannelInfo& channel, float value, float alpha) {
   return channel.times_alpha ? value / alpha : value;
 }
 
 u8vec4 dataPixel(const ChannelInfo& channel, const Planes& values, const Limits& limits, float alpha,
                  std::size_t i) {
-  if (alpha < std::max(kVisible, channel.least_alpha)) return overBackdrop(vec3(0), 0);
+  if (alpha < std::max(kVisibleAlpha, channel.least_alpha)) return overBackdrop(vec3(0), 0);
   if (channel.quantity == Quantity::Direction) return overBackdrop(0.5f + 0.5f * triple(values, i), alpha);
   const float value = surfaceValue(channel, values.values[i], alpha);
   const vec3 shown = channel.false_color ? vec3(falseColor(value, limits)) / 255.0f : vec3(value);
-  return overBackdrop(shown, channel.least_alpha > kVisible ? 1 : alpha);
+  return overBackdrop(shown, channel.least_alpha > kVisibleAlpha ? 1 : alpha);
 }
 
 std::string inWords(const char* what, vec3 v) {
@@ -92,7 +91,7 @@ std::string describePixel(const ChannelInfo& channel, const Planes& values, cons
                           int y) {
   const std::size_t i = static_cast<std::size_t>(y) * alpha.width + x;
   const float cover = alpha.values[i];
-  if (cover < kVisible) return "nothing here";
+  if (cover < kVisibleAlpha) return "nothing here";
   if (values.empty()) return fmt::format("alpha {:.2f}", cover);
   return fmt::format("{} {} · alpha {:.2f}", channel.title, inWords(channel, values, cover, i), cover);
 }
