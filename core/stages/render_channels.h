@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of solved frames as files (contract 3): OUT/<channel>/<camera>/<frame>.<ext>. Used by `beam
-// render`, by the evaluation and by the studio.
+// Pictures of solved frames as files, laid out as other tools expect them:
+// OUT/<channel>/<camera>/<frame>.<ext>. Used by `beam render`, by the evaluation and by the studio.
 #pragma once
 
 #include <filesystem>

@@ -56,7 +56,7 @@ class SplatView final : public PictureCanvas {
   // sky, fade, badge) is gone.
   void resetState();
 
-  // Keys of product 4.6; false: not one of ours. The window passes on keys that nobody else wanted.
+  // The view's own keys; false: not one of them. The window passes on keys that nobody else wanted.
   bool handleKey(const QKeyEvent& event);
   // The newest full-size picture is on the screen, as good as it gets.
   bool settled() const;

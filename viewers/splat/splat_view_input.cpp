@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mouse and keys of the splat view (product 4.6, 4.10).
+// Mouse and keys of the splat view: those of the other views where they mean the same.
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QWheelEvent>
