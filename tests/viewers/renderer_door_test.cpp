@@ -238,6 +238,24 @@ TEST(TextureRenderer, ShowsWhatValuesOfTheHostWouldShow) {
 }
 
 // Else its words come out as noise.
+TEST(TextureRenderer, HoldsTheLimitsOfDepthForDepthAlone) {
+  const auto open = std::make_shared<Stage>(), stage = std::make_shared<Stage>();
+  open->allow(3);
+  SplatView host(factory<RefiningRenderer>(open)), texture(factory<TextureRenderer>(stage));
+  std::vector<QImage> pictures;
+  for (SplatView* view : {&host, &texture}) {
+    showBalls(*view);
+    view->setChannel(channelOf(kDepthChannel));
+    ASSERT_TRUE(waitFor([&] { return view->settled(); }));
+    view->lockDepth(true);
+    ASSERT_TRUE(view->state().depth_limits);
+    view->setChannel(channelOf(kRoughnessChannel));
+    ASSERT_TRUE(waitFor([&] { return view->settled(); }));
+    pictures.push_back(view->picture());
+  }
+  EXPECT_LT(glm::distance(meanColor(pictures[0], kLeft), meanColor(pictures[1], kLeft)), 2.5f);
+}
+
 TEST(TextureRenderer, LeavesUploadsToQPainterAsTheyAre) {
   const auto stage = std::make_shared<Stage>();
   SplatView view(factory<TextureRenderer>(stage));

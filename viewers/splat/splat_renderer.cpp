@@ -29,13 +29,12 @@ std::vector<ChannelInfo> channelsFor(const SplatPicture& picture, const Renderer
   return asked;
 }
 
-Limits limitsOf(const SplatRequest& request, const ChannelInfo& channel, const Planes& values) {
-  if (!channel.false_color || isShare(channel)) return {};
-  if (channel.quantity == Quantity::Length && request.depth_limits) return *request.depth_limits;
-  return robustLimits(values.values);
-}
-
 }  // namespace
+
+std::optional<Limits> fixedLimits(const SplatRequest& request, const ChannelInfo& channel) {
+  if (!channel.false_color || isShare(channel)) return Limits{};
+  return channel.quantity == Quantity::Length ? request.depth_limits : std::nullopt;
+}
 
 const Planes& valuesIn(const SplatPicture& picture, std::string_view channel) {
   static const Planes none;
@@ -70,13 +69,9 @@ void SplatRenderer::render(const SplatRequest& r, Progress& progress, const OnPi
   frame.lack = lackOf(r.channel, r.scene);
   const bool dark = r.channel.needs == ChannelNeeds::MaterialsAndLight && frame.lack != Lack::None;
   frame.channel = dark ? channelOf(kRgbChannel) : r.channel;
-  if (!loaded_ || r.scene != scene_) {
-    loaded_ = false;
-    left_out_ = renderer_->load(r.scene, progress);
-    scene_ = r.scene;
-    loaded_ = true;
-  }
-  frame.left_out = left_out_;
+  frame.left_out = renderer_->load(r.scene, progress);
+  const std::optional<Limits> fixed = fixedLimits(r, frame.channel);
+  frame.limits = fixed.value_or(Limits{});
   const bool seen = r.sky && r.scene.environment;
   Image<vec3> sky = seen ? skyOf(r.camera, r.scene) : Image<vec3>();
   double milliseconds = 0;
@@ -86,11 +81,10 @@ void SplatRenderer::render(const SplatRequest& r, Progress& progress, const OnPi
     const RenderedChannel* shown = channelIn(picture.rendered, picture.channel.id);
     if (shown && !shown->values) {
       picture.sky = sky;
-      if (r.depth_limits) picture.limits = *r.depth_limits;
     } else {
       const Planes& values = valuesIn(picture, picture.channel.id);
       const Planes& alpha = valuesIn(picture, kAlphaChannel);
-      picture.limits = limitsOf(r, picture.channel, values);
+      if (!fixed) picture.limits = robustLimits(values.values);
       picture.pixels = channelPicture(
           picture.channel, values, alpha.empty() ? Planes(r.camera.width, r.camera.height, 1, 1.0f) : alpha,
           sky, {.exposure_stops = r.exposure_stops, .limits = picture.limits});

@@ -53,10 +53,10 @@ class SplatRenderer {
 
  private:
   std::unique_ptr<SceneRenderer> renderer_;
-  RenderScene scene_;
-  std::vector<std::string> left_out_;
-  bool loaded_ = false;
 };
+
+// The limits that do not hang on the picture; nothing: they are robustLimits() of its values.
+std::optional<Limits> fixedLimits(const SplatRequest& request, const ChannelInfo& channel);
 
 // The panorama as the camera sees it, the lighting's turn and gain applied: linear radiance.
 Image<vec3> skyOf(const Camera& camera, const RenderScene& scene);

@@ -109,8 +109,7 @@ void SplatView::take(SplatPicture picture, const Wish& wish) {
   shown_ticket_ = wish.ticket;
   shown_divisor_ = wish.divisor;
   read_back_.clear();
-  const bool without_limits = shown_.channel.false_color && !isShare(shown_.channel);
-  if (shownTexture() != 0 && without_limits && !wish.request.depth_limits)
+  if (shownTexture() != 0 && !fixedLimits(wish.request, shown_.channel))
     shown_.limits = robustLimits(hostValues(shown_.channel.id).values);
   if (wish.divisor == 2 && passing_ == 2 && shown_.milliseconds > 0)
     half_milliseconds_ = std::lerp(halfPictureMilliseconds(), shown_.milliseconds, kNewest);
