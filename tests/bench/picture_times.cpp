@@ -7,7 +7,6 @@
 #include <ctime>
 #include <functional>
 
-#include "core/base/rng.h"
 #include "core/optim/gaussian_model.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/scene/environment.h"
@@ -38,24 +37,12 @@ class Times {
   std::vector<double> all_;
 };
 
-std::shared_ptr<const Materials> someMaterials() {
-  auto m = std::make_shared<Materials>();
-  m->roughness.assign(kGaussians, 0.5f);
-  m->base_color = ShBlock(kGaussians, 3);
-  m->ambient_occlusion = ShBlock(kGaussians, 1);
-  const RandomStream random(3);
-  std::uint64_t draw = 0;
-  for (float& v : m->base_color.coefficients) v = 0.05f * random.normal(draw++);
-  for (float& v : m->ambient_occlusion.coefficients) v = 0.05f * random.normal(draw++);
-  return m;
-}
-
 void pictures() {
   const auto cloud = std::make_shared<const GaussianCloud>(testing::capsuleCloud(kGaussians));
   const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
   SplatRenderer renderer(newCpuSceneRenderer(device));
   SplatRequest request;
-  request.scene.instances = testing::sceneOf(cloud, someMaterials());
+  request.scene.instances = testing::sceneOf(cloud, testing::randomMaterials(kGaussians, 3, 0.05f, 0.5f));
   request.scene.environment =
       std::make_shared<const Environment>(makeEnvironment(Image<vec3>(64, 32, vec3(1), Encoding::Linear)));
   Progress progress;

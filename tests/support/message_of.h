@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -20,6 +21,11 @@ std::string messageOf(Error::Kind kind, Body&& body) {
   }
   ADD_FAILURE() << "nothing was thrown";
   return {};
+}
+
+template <class Body>
+std::string dataErrorOf(Body&& body) {
+  return messageOf(Error::Kind::Data, std::forward<Body>(body));
 }
 
 }  // namespace beam::testing

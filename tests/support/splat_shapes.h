@@ -4,7 +4,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
 
+#include "core/base/rng.h"
 #include "core/math/sampling.h"
 #include "core/scene/gaussian_cloud.h"
 
@@ -43,6 +47,23 @@ inline void addSphere(GaussianCloud& cloud, vec3 center, float radius_m, int cou
     const vec3 n(r * std::cos(phi), y, r * std::sin(phi));
     addSplat(cloud, center + radius_m * n, glm::normalize(n), spacing, 0.1f * spacing);
   }
+}
+
+inline void fillRandom(std::vector<float>& values, std::uint64_t stream, float size) {
+  const RandomStream random(stream);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = size * random.normal(i);
+}
+
+// SH of the given size around grey and half occluded; two streams.
+inline std::shared_ptr<Materials> randomMaterials(std::size_t count, std::uint64_t stream, float size,
+                                                  float roughness) {
+  auto materials = std::make_shared<Materials>();
+  materials->roughness.assign(count, roughness);
+  materials->base_color = ShBlock(count, 3);
+  materials->ambient_occlusion = ShBlock(count, 1);
+  fillRandom(materials->base_color.coefficients, stream, size);
+  fillRandom(materials->ambient_occlusion.coefficients, stream + 1, size);
+  return materials;
 }
 
 }  // namespace beam::testing

@@ -12,11 +12,13 @@
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
 
 namespace beam {
 namespace {
 
+using testing::dataErrorOf;
 using ::testing::HasSubstr;
 using testing::TempDir;
 
@@ -24,18 +26,6 @@ void put(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 std::string bytesOf(const std::filesystem::path& path) { return readTextFile(path); }
-
-template <class Call>
-std::string dataErrorOf(Call&& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), Error::Kind::Data);
-    return e.what();
-  }
-  ADD_FAILURE() << "expected an error";
-  return "";
-}
 
 Image<u8vec3> picture(int w, int h) {
   Image<u8vec3> p(w, h);

@@ -14,28 +14,18 @@
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
 
 namespace beam {
 namespace {
 
+using testing::dataErrorOf;
 using ::testing::HasSubstr;
 using testing::TempDir;
 
 void put(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
-}
-
-template <class Call>
-std::string dataErrorOf(Call&& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), Error::Kind::Data);
-    return e.what();
-  }
-  ADD_FAILURE() << "expected an error";
-  return "";
 }
 
 std::string encoded(const char* extension, const cv::Mat& m) {

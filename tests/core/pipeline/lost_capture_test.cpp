@@ -15,11 +15,6 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-template <class Body>
-std::string dataErrorOf(Body&& body) {
-  return messageOf(Error::Kind::Data, body);
-}
-
 // A solved project whose capture was moved to "elsewhere".
 class LostCapture : public ::testing::Test {
  protected:

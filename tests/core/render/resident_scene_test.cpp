@@ -20,22 +20,13 @@ Camera cameraAt(dvec3 position, int width = 60, int height = 50) {
 }
 const Camera kCamera = cameraAt(dvec3(0.1, 0.05, -2));
 
-void fillRandom(std::vector<float>& values, std::uint64_t stream, float size) {
-  const RandomStream random(stream);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = size * random.normal(i);
-}
-
 RenderInstance ball(vec3 center, int count, std::uint64_t stream) {
   auto cloud = std::make_shared<GaussianCloud>();
   addSphere(*cloud, center, 0.4f, count);
   fillRandom(cloud->color.coefficients, stream, 0.1f);
-  auto materials = std::make_shared<Materials>();
-  materials->roughness.assign(cloud->size(), 0.3f);
-  materials->base_color = ShBlock(cloud->size(), 3);
-  materials->ambient_occlusion = ShBlock(cloud->size(), 1);
-  fillRandom(materials->base_color.coefficients, stream + 1, 0.1f);
-  fillRandom(materials->ambient_occlusion.coefficients, stream + 2, 0.1f);
-  return {.cloud = cloud, .materials = materials, .attributes = nullptr};
+  return {.cloud = cloud,
+          .materials = randomMaterials(cloud->size(), stream + 1, 0.1f, 0.3f),
+          .attributes = nullptr};
 }
 
 const std::vector<std::string> kMaterials = {kBaseColorName, kOcclusionName, kRoughnessName};

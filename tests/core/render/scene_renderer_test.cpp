@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/render/deferred.h"
 #include "tests/support/message_of.h"
@@ -37,18 +36,9 @@ std::shared_ptr<const Environment> gradientSky() {
 RenderInstance ball() {
   auto cloud = std::make_shared<GaussianCloud>();
   addSphere(*cloud, vec3(0), 0.5f, 300);
-  const std::size_t n = cloud->size();
-  auto materials = std::make_shared<Materials>();
-  materials->roughness.assign(n, 0.4f);
-  materials->base_color = ShBlock(n, 3);
-  materials->ambient_occlusion = ShBlock(n, 1);
-  const RandomStream random(7);
-  std::uint64_t draw = 0;
-  for (float& v : materials->base_color.coefficients) v = 0.1f * random.normal(draw++);
-  for (float& v : materials->ambient_occlusion.coefficients) v = 0.1f * random.normal(draw++);
   RenderInstance instance;
   instance.cloud = cloud;
-  instance.materials = materials;
+  instance.materials = randomMaterials(cloud->size(), 7, 0.1f, 0.4f);
   instance.attributes = std::make_shared<const std::vector<Attribute>>();
   return instance;
 }

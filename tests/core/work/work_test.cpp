@@ -14,6 +14,7 @@
 #include "core/work/render_frames.h"
 #include "core/work/report.h"
 #include "tests/core/work/true_copy.h"
+#include "tests/support/message_of.h"
 #include "tests/support/stand_in_project.h"
 #include "tests/support/temp_dir.h"
 
@@ -58,16 +59,6 @@ class Work : public ::testing::Test {
   Progress progress_;
 };
 
-template <class Doing>
-std::optional<Error::Kind> refusalOf(Doing&& doing) {
-  try {
-    doing();
-  } catch (const Error& e) {
-    return e.kind();
-  }
-  return std::nullopt;
-}
-
 TEST_F(Work, RenderFramesSaysWhatItDrew) {
   const RenderFramesOutcome outcome = renderFrames(pictures(), *newCpuSceneRenderer(*device_), progress_);
   EXPECT_EQ(outcome.cameras, 4u);
@@ -81,16 +72,13 @@ TEST_F(Work, RenderFramesSaysWhatItDrew) {
 TEST_F(Work, RenderFramesRefusesWordsThatChooseNothing) {
   RenderFramesRequest request = pictures();
   request.channels = {"colour"};
-  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }),
-            Error::Kind::Usage);
+  messageOf(Error::Kind::Usage, [&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); });
   request = pictures();
   request.cameras = "nobody";
-  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }),
-            Error::Kind::Usage);
+  messageOf(Error::Kind::Usage, [&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); });
   request = pictures();
   request.frames = "77";
-  EXPECT_EQ(refusalOf([&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); }),
-            Error::Kind::Usage);
+  messageOf(Error::Kind::Usage, [&] { renderFrames(request, *newCpuSceneRenderer(*device_), progress_); });
   EXPECT_THAT(written(), IsEmpty());
 }
 
@@ -134,10 +122,9 @@ TEST_F(Work, EvaluateAgainstItsOwnPicturesFindsNoFault) {
 
 TEST_F(Work, EvaluateWithoutHeldOutCamerasSaysSo) {
   const Project project = solvedStandIn(folder_ / "p", {.cameras = 1, .frames = 1});
-  EXPECT_EQ(refusalOf([&] {
-              evaluate({project, "all", folder_ / "nowhere", {}}, *device_, progress_);
-            }),
-            Error::Kind::Data);
+  messageOf(Error::Kind::Data, [&] {
+    evaluate({project, "all", folder_ / "nowhere", {}}, *device_, progress_);
+  });
 }
 
 TEST_F(Work, AnEvaluationIsKeptInTheProject) {
@@ -161,10 +148,7 @@ TEST_F(Work, ReportWritesOnePageOfAllFrames) {
 
 TEST_F(Work, ReportOfNothingIsRefused) {
   const Project project = newStandIn(folder_ / "p");
-  EXPECT_EQ(refusalOf([&] {
-              report({project, folder_ / "page.html"}, *device_, progress_);
-            }),
-            Error::Kind::Data);
+  messageOf(Error::Kind::Data, [&] { report({project, folder_ / "page.html"}, *device_, progress_); });
   EXPECT_FALSE(fs::exists(folder_ / "page.html"));
 }
 
