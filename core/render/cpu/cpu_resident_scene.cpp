@@ -21,6 +21,35 @@ std::size_t planesOf(const AttributeInfo& info) {
   return static_cast<std::size_t>(info.coefficients) * info.channels;
 }
 
+// The basis of each Gaussian's direction from the eye; positions, and what is written, a block each.
+void basesFrom(vec3 eye, const float* const position[3], std::size_t count,
+               float (&basis)[kShCount][kBlock]) {
+  float x[kBlock], y[kBlock], z[kBlock];
+  for (std::size_t i = 0; i < count; ++i) {
+    const vec3 to = vec3(position[0][i], position[1][i], position[2][i]) - eye;
+    const vec3 d = to / std::max(glm::length(to), 1e-6f);
+    x[i] = d.x;
+    y[i] = d.y;
+    z[i] = d.z;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto b = shBasis({x[i], y[i], z[i]});
+    for (int k = 0; k < kShCount; ++k) basis[k][i] = b[k];
+  }
+}
+
+// 0.5 + sum_k basis_k coefficient_k, the coefficients `apart` from each other.
+void sumOf(const float (&basis)[kShCount][kBlock], const float* coefficient, std::size_t apart,
+           std::size_t count, float* value) {
+  float sum[kBlock];
+  for (std::size_t i = 0; i < count; ++i) {
+    float v = 0.5f;
+    for (int k = 0; k < kShCount; ++k) v += basis[k][i] * coefficient[k * apart + i];
+    sum[i] = v;
+  }
+  std::copy_n(sum, count, value);
+}
+
 }  // namespace
 
 void CpuResidentScene::pack(const std::vector<Place>& places, std::size_t total,
@@ -94,23 +123,16 @@ void CpuResidentScene::evaluate(const std::vector<const AttributePlanes*>& attri
     float basis[kShCount][kBlock];
     for (std::size_t block = begin; block < end; ++block) {
       const std::size_t first = block * kBlock, count = std::min(kBlock, n - first);
-      const float* position[3];
-      for (int axis = 0; axis < 3; ++axis)
-        position[axis] = gaussians_.plane(PlaneLayout::kPosition + axis) + first;
-      for (std::size_t i = 0; i < count; ++i) {
-        const vec3 to = vec3(position[0][i], position[1][i], position[2][i]) - eye;
-        const auto b = shBasis(to / std::max(glm::length(to), 1e-6f));
-        for (int k = 0; k < kShCount; ++k) basis[k][i] = b[k];
-      }
+      const float* const position[3] = {gaussians_.plane(PlaneLayout::kPosition) + first,
+                                        gaussians_.plane(PlaneLayout::kPosition + 1) + first,
+                                        gaussians_.plane(PlaneLayout::kPosition + 2) + first};
+      basesFrom(eye, position, count, basis);
       float* value = out + first;
       for (const AttributePlanes* planes : attributes) {
         const int channels = planes->info.channels;
         for (int c = 0; c < channels; ++c, value += stride) {
-          std::fill_n(value, count, 0.5f);
-          for (int k = 0; k < kShCount; ++k) {
-            const float* coefficient = planes->values.data() + (k * channels + c) * stride + first;
-            for (std::size_t i = 0; i < count; ++i) value[i] += basis[k][i] * coefficient[i];
-          }
+          const float* coefficient = planes->values.data() + c * stride + first;
+          sumOf(basis, coefficient, channels * stride, count, value);
         }
       }
     }
