@@ -217,15 +217,6 @@ Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min
   return out;
 }
 
-vec3 lookUp(const Image<vec3>& r, vec2 uv) {
-  const float x = uv.x * r.width - 0.5f, y = std::clamp(uv.y * r.height - 0.5f, 0.0f, r.height - 1.0f);
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(y),
-            y1 = std::min(y0 + 1, r.height - 1);
-  const int left = (x0 + r.width) % r.width, right = (x0 + 1) % r.width;
-  return glm::mix(glm::mix(r(left, y0), r(right, y0), x - x0), glm::mix(r(left, y1), r(right, y1), x - x0),
-                  y - y0);
-}
-
 PreparedLight prepareLight(const Environment& environment, const Progress& progress) {
   PreparedLight light;
   light.radiance = environment.radiance;

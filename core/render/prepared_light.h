@@ -75,10 +75,4 @@ Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min
                               const std::function<float(float)>& kernel,
                               const Progress& progress = Progress{});
 
-// Bilinear look-up at a texture position (scene/environment.h) or a unit direction.
-vec3 lookUp(const Image<vec3>& panorama, vec2 uv);
-inline vec3 lookUp(const Image<vec3>& panorama, vec3 direction) {
-  return lookUp(panorama, latLongFromDirection(direction));
-}
-
 }  // namespace beam

@@ -19,6 +19,12 @@ struct Environment {
 vec2 latLongFromDirection(vec3 direction);
 vec3 directionFromLatLong(vec2 uv);
 
+// Bilinear, across the seam, at a texture position in [0, 1] or a unit direction.
+vec3 lookUp(const Image<vec3>& panorama, vec2 uv);
+inline vec3 lookUp(const Image<vec3>& panorama, vec3 direction) {
+  return lookUp(panorama, latLongFromDirection(direction));
+}
+
 // Radiance from `direction` (unit, pointing to the light), bilinear, yaw and gain applied.
 vec3 radianceFrom(const Environment& environment, vec3 direction);
 
