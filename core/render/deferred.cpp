@@ -38,14 +38,21 @@ void shape(const Planes& like, int channels, Planes& out) {
 class Rays {
  public:
   explicit Rays(const Camera& camera)
-      : camera_(camera), world_from_camera_(glm::conjugate(camera.camera_from_world.rotation)) {}
-  dvec3 through(int x, int y) const { return rayOf(camera_.intrinsics, {x + 0.5, y + 0.5}); }
+      : world_from_camera_(glm::conjugate(camera.camera_from_world.rotation)),
+        x_(static_cast<std::size_t>(camera.width)),
+        y_(static_cast<std::size_t>(camera.height)) {
+    for (std::size_t x = 0; x < x_.size(); ++x) x_[x] = rayOf(camera.intrinsics, {x + 0.5, 0.5}).x;
+    for (std::size_t y = 0; y < y_.size(); ++y) y_[y] = rayOf(camera.intrinsics, {0.5, y + 0.5}).y;
+  }
+  dvec3 through(int x, int y) const {
+    return {x_[static_cast<std::size_t>(x)], y_[static_cast<std::size_t>(y)], 1};
+  }
   vec3 toEye(int x, int y) const { return vec3(-glm::normalize(world_from_camera_ * through(x, y))); }
   const dquat& worldFromCamera() const { return world_from_camera_; }
 
  private:
-  const Camera& camera_;
   dquat world_from_camera_;
+  std::vector<double> x_, y_;  // of columns and rows: a division a pixel would be a tenth of its shading
 };
 
 // body(x, y, pixel) for every pixel, in parallel by rows.
