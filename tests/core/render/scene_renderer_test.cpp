@@ -57,10 +57,11 @@ RenderedPicture drawn(SceneRenderer& renderer, const Camera& camera, const std::
   return picture;
 }
 
+// All that litBall() can show.
 std::vector<ChannelInfo> pictures() {
   std::vector<ChannelInfo> all;
   for (const ChannelInfo& c : channels())
-    if (c.needs != ChannelNeeds::Mesh) all.push_back(c);
+    if (c.needs != ChannelNeeds::Mesh && lackOf(c, litBall()) == Lack::None) all.push_back(c);
   return all;
 }
 
