@@ -198,6 +198,12 @@ void warnOfGaps(CaptureDescription& d, const PictureTable& files, const std::vec
   }
 }
 
+// Without an origin of their own, as all that reads them takes them.
+void inWorld(PointCloud& seeds) {
+  for (std::size_t i = 0; i < seeds.position_m.size(); ++i) seeds.position_m[i] = vec3(seeds.position(i));
+  seeds.origin = dvec3(0);
+}
+
 // What the seed points say of their unit, against the masks.
 void warnOfSeeds(const SubjectMeasure& subject, std::size_t count, const fs::path& folder,
                  std::vector<std::string>& warnings) {
@@ -254,6 +260,7 @@ ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxi
                                     : foundPlacement(turned, {options.unit_m, d.unit_m}, folder, d.warnings);
   const Similarity3 world_from_capture = worldFromCapture(up, out.placement);
   set = isTurn(world_from_capture) ? std::move(turned) : transformed(std::move(set), world_from_capture);
+  inWorld(set.seed_points);
   for (std::string& doubt : doubtsOf(out.placement, folder.string())) d.warnings.push_back(std::move(doubt));
   out.warnings = std::move(d.warnings);
   return out;

@@ -56,7 +56,8 @@ struct ColmapModel {
   std::map<std::uint32_t, ColmapCamera> cameras;
   std::vector<ColmapImage> images;
   std::map<std::uint32_t, std::string> camera_of_image;  // by image id
-  PointCloud points;
+  std::vector<dvec3> points;
+  std::vector<u8vec3> colors;
 };
 
 [[noreturn]] void bad(const std::filesystem::path& path, const std::string& what) {
@@ -131,8 +132,8 @@ void addPoint(ColmapModel& m, dvec3 x, u8vec3 color, const std::set<std::uint32_
     if (seen_by.size() == 2) break;
   }
   if (seen_by.size() < 2 || !std::isfinite(x.x + x.y + x.z)) return;
-  m.points.position_m.emplace_back(x);
-  m.points.color.push_back(color);
+  m.points.push_back(x);
+  m.colors.push_back(color);
 }
 
 class BinaryReader {
@@ -330,7 +331,7 @@ std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& f
     d.name = folder.filename().string();
     const std::filesystem::path pictures = folder / "images";
     addPictures(d, m, std::filesystem::is_directory(pictures) ? pictures : folder, model);
-    d.points = m.points;
+    d.points = pointCloudOf(m.points, m.colors);
     return d;
   }
   return std::nullopt;

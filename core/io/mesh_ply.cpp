@@ -36,6 +36,17 @@ std::vector<vec3> positionsOf(const PlyElement& vertex, const std::filesystem::p
   return out;
 }
 
+// Of an element that has some; positionsOf has looked at it.
+std::vector<dvec3> widePositionsOf(const PlyElement& vertex) {
+  const std::size_t columns[3] = {vertex.column("x").value(), vertex.column("y").value(),
+                                  vertex.column("z").value()};
+  std::vector<dvec3> out(vertex.count);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (int k = 0; k < 3; ++k) out[i][k] = vertex.wide[i * vertex.columns + columns[k]];
+  }
+  return out;
+}
+
 const PlyElement& vertexOf(const std::vector<PlyElement>& elements, const std::filesystem::path& path) {
   if (const PlyElement* v = findElement(elements, "vertex")) return *v;
   throw Error(Error::Kind::Data, fmt::format("\"{}\": expected an element \"vertex\"", path.string()));
@@ -130,6 +141,7 @@ PointCloud readPointsPly(const std::filesystem::path& path) {
   const PlyElement& vertex = vertexOf(elements, path);
   PointCloud points;
   points.position_m = positionsOf(vertex, path);
+  if (!vertex.wide.empty()) points = pointCloudOf(widePositionsOf(vertex), {});
   const auto r = vertex.column("red"), g = vertex.column("green"), b = vertex.column("blue");
   if (!r || !g || !b) return points;
   points.color.resize(points.position_m.size());

@@ -155,12 +155,18 @@ class PlyReader {
       return;
     }
     if (e.columns < e.properties.size()) e.lists.reserve(e.count);
+    const bool wide = std::any_of(e.properties.begin(), e.properties.end(), [](const PlyProperty& p) {
+      return p.type == PlyType::Double && !p.count_type;
+    });
+    if (wide) e.wide.reserve(e.values.size());
     float* out = e.values.data();
     for (std::size_t row = 0; row < e.count; ++row) {
       bool first_list = true;
       for (const PlyProperty& p : e.properties) {
         if (!p.count_type) {
-          *out++ = static_cast<float>(value(p.type));
+          const double v = value(p.type);
+          *out++ = static_cast<float>(v);
+          if (wide) e.wide.push_back(v);
         } else {
           std::vector<std::uint32_t> list = listOf(e, row, p);
           if (first_list) e.lists.push_back(std::move(list));

@@ -25,6 +25,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
   std::size_t columns = 0;                        // plain properties
   std::vector<float> values;                      // [row][column]: the plain properties in their order
+  std::vector<double> wide;                       // the same, not rounded, where one is stored as a double
   std::vector<std::vector<std::uint32_t>> lists;  // of the first list property, one a row
 
   // Position of a plain property in its row; nothing when there is none.

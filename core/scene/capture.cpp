@@ -28,4 +28,19 @@ dmat3 worldFromCapture(UpAxis up) {
   return dmat3(1.0);
 }
 
+PointCloud pointCloudOf(const std::vector<dvec3>& positions, std::vector<u8vec3> color) {
+  constexpr double kFar = 1e4;  // of their extent: there single precision still tells 1/1000 of it apart
+  PointCloud points;
+  points.color = std::move(color);
+  if (positions.empty()) return points;
+  dvec3 low = positions[0], high = low;
+  for (const dvec3& p : positions) low = glm::min(low, p), high = glm::max(high, p);
+  const dvec3 middle = 0.5 * (low + high), extent = high - low;
+  if (glm::length(middle) > kFar * glm::length(extent)) points.origin = middle;
+  points.position_m.reserve(positions.size());
+  for (const dvec3& p : positions)
+    points.position_m.emplace_back(points.origin == dvec3(0) ? p : p - points.origin);
+  return points;
+}
+
 }  // namespace beam

@@ -30,9 +30,18 @@ struct View {
 };
 
 struct PointCloud {
-  std::vector<vec3> position_m;
-  std::vector<u8vec3> color;  // sRGB; empty or one per point
+  std::vector<vec3> position_m;  // from `origin`
+  std::vector<u8vec3> color;     // sRGB; empty or one per point
+  // Other than 0 only in the axes of a capture that lies so far from its origin that single precision would
+  // blur its points.
+  dvec3 origin = dvec3(0);
+
+  dvec3 position(std::size_t i) const {
+    return origin == dvec3(0) ? dvec3(position_m[i]) : origin + dvec3(position_m[i]);
+  }
 };
+// Points that are given in double precision.
+PointCloud pointCloudOf(const std::vector<dvec3>& positions, std::vector<u8vec3> color);
 
 // Reads pictures of a capture. Implementations are safe to call from several threads.
 class FrameSource {

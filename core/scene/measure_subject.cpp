@@ -101,12 +101,12 @@ struct Inside {
   double tall = 0;  // from the lowest to the highest of them
 };
 
-Inside insideOf(const VisualHull& hull, const std::vector<vec3>& points, const Similarity3& to_hull,
+Inside insideOf(const VisualHull& hull, const std::vector<dvec3>& points, const Similarity3& to_hull,
                 double factor) {
   std::size_t seen = 0, inside = 0;
   double low = std::numeric_limits<double>::max(), high = -low;
-  for (const vec3& p : points) {
-    const vec3 x(to_hull * (factor * dvec3(p)));
+  for (const dvec3& p : points) {
+    const vec3 x(to_hull * (factor * p));
     const VisualHull::Votes votes = hull.votes(x);
     if (votes.seen < 2) continue;
     ++seen;
@@ -122,9 +122,9 @@ Inside insideOf(const VisualHull& hull, const std::vector<vec3>& points, const S
 SeedFit seedFit(const VisualHull& hull, const PointCloud& seeds, const Similarity3& to_hull, double height) {
   constexpr double kFits = 0.25, kFitsAfter = 0.5;
   constexpr std::size_t kMostPoints = 2000;
-  std::vector<vec3> some;
+  std::vector<dvec3> some;
   const std::size_t all = seeds.position_m.size(), count = std::min(all, kMostPoints);
-  for (std::size_t i = 0; i < count; ++i) some.push_back(seeds.position_m[i * all / count]);
+  for (std::size_t i = 0; i < count; ++i) some.push_back(seeds.position(i * all / count));
   SeedFit fit{insideOf(hull, some, to_hull, 1).share, 1};
   if (fit.share >= kFits) return fit;
   double best = kFitsAfter;

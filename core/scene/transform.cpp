@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/transform.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/base/error.h"
@@ -85,9 +88,22 @@ Camera transformed(const Camera& camera, const Similarity3& a_from_b) {
 
 PointCloud transformed(const PointCloud& points, const Similarity3& a_from_b) {
   requireSimilarity(a_from_b);
-  PointCloud out = points;
-  for (vec3& p : out.position_m) p = vec3(a_from_b * dvec3(p));
-  return out;
+  std::vector<dvec3> positions(points.position_m.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = a_from_b * points.position(i);
+  return pointCloudOf(positions, points.color);
+}
+
+std::string roundingWarning(const Similarity3& capture_from_world) {
+  constexpr double kLost_m = 1e-4;  // less than a photograph shows of a person
+  const dvec3 far = glm::abs(capture_from_world.translation);
+  const auto distance = static_cast<float>(std::max({far.x, far.y, far.z}));
+  const float next = std::nextafter(distance, std::numeric_limits<float>::max());
+  const double step_m = (static_cast<double>(next) - distance) / capture_from_world.scale;
+  if (!(step_m > kLost_m)) return {};
+  return fmt::format(
+      "the capture lies {:.0f} of its units from its origin: in its axes positions are rounded to "
+      "{:.3g} mm; world axes keep them (--frame-of world)",
+      distance, 1000 * step_m);
 }
 
 CaptureSet transformed(CaptureSet capture, const Similarity3& a_from_b) {

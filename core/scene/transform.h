@@ -3,6 +3,8 @@
 // rotations, normals and SH bands its turn. A pure turn between axes only exchanges and negates numbers.
 #pragma once
 
+#include <string>
+
 #include "core/math/similarity3.h"
 #include "core/scene/capture.h"
 #include "core/scene/gaussian_cloud.h"
@@ -19,6 +21,8 @@ Mesh transformed(const Mesh& mesh, const Similarity3& a_from_b);
 // Takes the same picture of what went with it: camera axes keep their directions, depth is in a's unit.
 Camera transformed(const Camera& camera, const Similarity3& a_from_b);
 PointCloud transformed(const PointCloud& points, const Similarity3& a_from_b);
+// What single precision costs positions that are brought there, a sentence; empty where it is no loss.
+std::string roundingWarning(const Similarity3& capture_from_world);
 // Its capture_from_world goes back all the way.
 CaptureSet transformed(CaptureSet capture, const Similarity3& a_from_b);
 

@@ -82,6 +82,8 @@ class ChannelWriter {
       else
         drawn_.push_back(channelOf(id));
     }
+    if (const std::string lost = roundingWarning(frame_from_world_); mesh_ && !lost.empty())
+      logWarning("{}", lost);
     if (!relit_) return;
     for (const fs::path& file : request.environments) {
       lights_.push_back({std::string(kRelightChannel) + "_" + file.stem().string(),

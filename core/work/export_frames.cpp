@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/io/splat_ply.h"
 #include "core/scene/transform.h"
 #include "core/stages/project_sequence.h"
@@ -65,6 +66,8 @@ ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   const auto sequence = sequenceOf(request.project, Shows::Between);
   const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
   const Similarity3 capture_from_world = sequence->captureFromWorld();
+  if (const std::string lost = roundingWarning(capture_from_world); !request.world_frame && !lost.empty())
+    logWarning("{}", lost);
   std::filesystem::create_directories(request.out);
   ExportOutcome outcome;
   progress.expect(static_cast<std::int64_t>(frames.size()));

@@ -189,5 +189,35 @@ TEST(Transformed, RefusesMirrorsAndScalesThatAreNoSizes) {
   EXPECT_THROW(transformed(Mesh{}, {dmat3(1.0), -2}), Error);
 }
 
+TEST(PointCloud, OfACaptureFarFromItsOriginKeepsItsDetail) {
+  std::vector<dvec3> positions;
+  for (std::uint64_t i = 0; i < 100; ++i) positions.push_back(dvec3(5e5, 5e6, 100) + dvec3(randomVec(i)));
+  const PointCloud capture = pointCloudOf(positions, {});
+  const Similarity3 world_from_capture{someTurn(), 1, -(someTurn() * dvec3(5e5, 5e6, 100))};
+  const PointCloud world = transformed(transformed(capture, {someTurn()}),
+                                       world_from_capture * inverse(Similarity3{someTurn()}));
+  EXPECT_EQ(world.origin, dvec3(0));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_LT(glm::distance(capture.position(i), positions[i]), 1e-6);
+    EXPECT_LT(glm::distance(world.position(i), world_from_capture * positions[i]), 1e-6);
+  }
+}
+
+TEST(PointCloud, OfAnOrdinaryCaptureIsRoundedAsItAlwaysWas) {
+  const std::vector<dvec3> positions = {dvec3(210.1, 0.7, -3.3), dvec3(211.3, 2.1, -4.1)};
+  const PointCloud points = pointCloudOf(positions, {});
+  EXPECT_EQ(points.origin, dvec3(0));
+  EXPECT_EQ(points.position_m[0], vec3(positions[0]));
+}
+
+TEST(Transformed, SaysWhatSinglePrecisionCostsFarFromTheOrigin) {
+  EXPECT_EQ(roundingWarning(Similarity3{}), "");
+  EXPECT_EQ(roundingWarning({someTurn(), 1, dvec3(0, -210, 0)}), "");
+  EXPECT_EQ(roundingWarning({someTurn(), 1000, dvec3(210000, 0, 0)}), "") << "210 m in millimetres";
+  const std::string lost = roundingWarning({someTurn(), 1, dvec3(5e5, -5e6, 100)});
+  EXPECT_NE(lost.find("500 mm"), std::string::npos) << lost;
+  EXPECT_NE(lost.find("--frame-of world"), std::string::npos) << lost;
+}
+
 }  // namespace
 }  // namespace beam
