@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/json_words.h"
 
+#include <fmt/format.h>
+
 #include <string_view>
+
+#include "core/base/error.h"
 
 namespace beam {
 namespace {
@@ -38,6 +42,16 @@ std::string jsonComplaint(const std::exception& e) {
     cut(text, "' not found", "\", found none");
   }
   return text;
+}
+
+bool shallowJson(int depth) {
+  if (depth <= kDeepestJson) return true;
+  throw Error(Error::Kind::Data, fmt::format("expected at most {} levels, found more", kDeepestJson));
+}
+
+std::string shortJson(std::string text) {
+  constexpr std::size_t kLongest = 60;
+  return text.size() > kLongest ? text.substr(0, kLongest) + " ..." : text;
 }
 
 }  // namespace beam

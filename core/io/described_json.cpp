@@ -17,8 +17,6 @@ using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr int kMajor = 1, kMinor = 0;
-constexpr int kDeepest = 64;  // objects in each other; ours need six, and deep ones would exhaust the stack
-constexpr std::size_t kLongestFound = 60;
 
 std::string joined(const std::string& place, std::string_view name) {
   return place.empty() ? std::string(name) : fmt::format("{}.{}", place, name);
@@ -73,10 +71,9 @@ void checkFormat(const Json& format, const char* name) {
 }  // namespace
 
 void refuseJson(const std::string& place, const std::string& expected, const Json& found) {
-  std::string text = found.dump(-1, ' ', true);
-  if (text.size() > kLongestFound) text = text.substr(0, kLongestFound) + " ...";
   throw Error(Error::Kind::Data,
-              fmt::format("{}{}expected {}, found {}", place, place.empty() ? "" : ": ", expected, text));
+              fmt::format("{}{}expected {}, found {}", place, place.empty() ? "" : ": ", expected,
+                          shortJson(found.dump(-1, ' ', true))));
 }
 
 JsonObject::JsonObject(Json value, std::string place) : value_(std::move(value)), place_(std::move(place)) {
@@ -150,10 +147,7 @@ std::string documentText(const char* format_name, const OrderedJson& members) {
 }
 
 Json parseDocument(std::string_view text, const char* format_name, std::string_view where) {
-  const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth <= kDeepest) return true;
-    throw Error(Error::Kind::Data, fmt::format("expected at most {} levels, found more", kDeepest));
-  };
+  const auto shallow = [](int depth, Json::parse_event_t, Json&) { return shallowJson(depth); };
   try {
     Json document = Json::parse(text, shallow);
     if (!document.is_object()) refuseJson("", "an object", document);

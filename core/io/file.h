@@ -17,7 +17,8 @@ namespace beam {
 // The whole file. Throws Error{Data} when it is missing, no regular file or larger than `max_bytes`;
 // Error{Storage} when reading fails.
 std::vector<std::byte> readFile(const std::filesystem::path& path, std::uint64_t max_bytes);
-std::string readTextFile(const std::filesystem::path& path, std::uint64_t max_bytes = 64u << 20);
+inline constexpr std::uint64_t kMostTextBytes = 64u << 20;
+std::string readTextFile(const std::filesystem::path& path, std::uint64_t max_bytes = kMostTextBytes);
 
 // Creates or replaces `path`: a temporary file in the same folder, fsync, rename, fsync of the folder. Throws
 // Error{Storage} with the reason (disk full, read-only folder) and leaves nothing behind.

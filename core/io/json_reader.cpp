@@ -50,7 +50,12 @@ std::string quoteNonNumbers(const std::string& text) {
 nlohmann::json readJson(const std::filesystem::path& path) {
   const std::string text = readTextFile(path);
   try {
-    return nlohmann::json::parse(quoteNonNumbers(text));
+    const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+      return shallowJson(depth);
+    };
+    return nlohmann::json::parse(quoteNonNumbers(text), shallow);
+  } catch (const Error& e) {
+    throw Error(e.kind(), fmt::format("\"{}\": {}", path.string(), e.what()));
   } catch (const nlohmann::json::exception& e) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\" is no valid JSON: {}", path.string(), jsonComplaint(e)));
@@ -64,7 +69,8 @@ double finiteNumber(const nlohmann::json& object, const char* key, const std::st
   const nlohmann::json& v = object.at(key);
   if (!v.is_number() || !std::isfinite(v.get<double>())) {
     throw Error(Error::Kind::Data,
-                fmt::format("{}: expected \"{}\" to be a finite number, found {}", where, key, v.dump()));
+                fmt::format("{}: expected \"{}\" to be a finite number, found {}", where, key,
+                            shortJson(v.dump())));
   }
   return v.get<double>();
 }

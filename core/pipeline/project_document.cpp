@@ -88,7 +88,9 @@ void readWorld(Json j, ProjectDocument& document) {
 fs::path nextHistoryFile(const fs::path& history) {
   std::vector<fs::path> kept;
   for (const auto& entry : fs::directory_iterator(history)) {
-    if (entry.path().extension() == ".json") kept.push_back(entry.path());
+    const std::string number = entry.path().stem().string();
+    const bool ours = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
+    if (ours && entry.path().extension() == ".json") kept.push_back(entry.path());
   }
   std::sort(kept.begin(), kept.end());
   const int last = kept.empty() ? 0 : std::atoi(kept.back().stem().c_str());
@@ -125,6 +127,15 @@ void keepInHistory(const fs::path& project, const std::string& text) {
   } catch (const fs::filesystem_error& e) {
     throw Error(Error::Kind::Storage, e.what());
   }
+}
+
+// Nothing is written that would be refused when it is read.
+void requireReadable(const fs::path& project, const std::string& text) {
+  if (text.size() <= kMostTextBytes) return;
+  throw Error(Error::Kind::Usage,
+              fmt::format("\"{}\" cannot be saved: its project.json would have {} bytes, the limit is {}; keep "
+                          "looks with many keys in files of their own",
+                          project.string(), text.size(), kMostTextBytes));
 }
 
 ProjectDocument documentOf(Json j) {
@@ -246,7 +257,10 @@ std::string toJson(const ProjectDocument& document) {
   if (!document.looks.empty()) j["looks"] = Json::parse(looksToJson(document.looks));
   const Json unknown = Json::parse(document.unknown);
   for (const auto& [key, value] : unknown.items()) j[key] = value;
-  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text = j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  // Many keys of looks: their blanks alone could make it longer than what is read.
+  if (text.size() > kMostTextBytes) text = j.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text;
 }
 
 ProjectDocument parseProjectDocument(std::string_view json, std::string_view where) {
@@ -256,7 +270,7 @@ ProjectDocument parseProjectDocument(std::string_view json, std::string_view whe
   if (json.find_first_not_of(" \t\r\n") == std::string_view::npos) throw broken("it is empty");
   int major = 0;
   try {
-    Json j = Json::parse(json);
+    Json j = Json::parse(json, [](int depth, Json::parse_event_t, Json&) { return shallowJson(depth); });
     major = j.at("format").at("major").get<int>();
     if (major <= kMajor) return documentOf(std::move(j));
   } catch (const nlohmann::json::exception& e) {
@@ -285,6 +299,7 @@ void writeProjectDocument(const fs::path& project, ProjectDocument& document) {
   if (disk) document.takes = disk->document.takes;
   const std::string text = toJson(document);
   if (disk && disk->text == text) return;
+  requireReadable(project, text);
   if (!disk || !sameButForLooks(disk->document, document)) keepInHistory(project, text);
   writeFileAtomically(project / "project.json", text);
 }
@@ -300,7 +315,9 @@ std::vector<SavedTake> changeSavedTakes(const fs::path& project, const ChangeTak
   if (changed == document.takes) return changed;
   document.takes = changed;
   // No copy in history/: that is for what people change, and a run may change takes many times.
-  writeFileAtomically(file, toJson(document));
+  const std::string text = toJson(document);
+  requireReadable(project, text);
+  writeFileAtomically(file, text);
   return changed;
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/pipeline/fake_pipeline.h"
+#include "tests/support/message_of.h"
 
 namespace beam::testing {
 namespace {
@@ -137,6 +138,44 @@ TEST_F(ProjectHistory, OfANewerProgramIsNotCalledBroken) {
   text.replace(text.find("\"major\": 1"), 10, "\"major\": 2");
   write(text);
   EXPECT_THAT(refusal(), AllOf(HasSubstr("newer"), Not(HasSubstr("broken"))));
+}
+
+TEST_F(ProjectHistory, ForeignFilesInTheFolderChangeNoNumberAndStay) {
+  std::ofstream(folder() / "history" / "zz-mine.json") << "{}";
+  const std::string first = readTextFile(folder() / "history" / "00000001.json");
+  Project p = house.open();
+  p.set("surface.batch", 9);
+  p.save();
+  EXPECT_EQ(projectHistory(folder()).front().file.filename(), "00000004.json");
+  EXPECT_EQ(readTextFile(folder() / "history" / "00000001.json"), first);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "history" / "zz-mine.json"));
+}
+
+TEST_F(ProjectHistory, ADeepDocumentIsRefusedBeforeItExhaustsTheStack) {
+  const std::size_t deep = 300000;
+  std::string text = readTextFile(file());
+  text.insert(1, "\"later\": " + std::string(deep, '[') + std::string(deep, ']') + ",");
+  write(text);
+  EXPECT_THAT(refusal(), HasSubstr("levels"));
+}
+
+TEST_F(ProjectHistory, WhatWouldNotBeReadAgainIsNotWritten) {
+  const std::string before = readTextFile(file());
+  ProjectDocument document = parseProjectDocument(before, "p");
+  document.unknown = "{\"later\": \"" + std::string(kMostTextBytes, 'x') + "\"}";
+  EXPECT_THAT(messageOf(Error::Kind::Usage, [&] { writeProjectDocument(folder(), document); }),
+              AllOf(HasSubstr("cannot be saved"), HasSubstr("67108864")));
+  EXPECT_EQ(readTextFile(file()), before);
+  EXPECT_EQ(projectHistory(folder()).size(), 3u);
+}
+
+TEST_F(ProjectHistory, ALongDocumentIsWrittenWithoutBlanksSoThatItIsReadAgain) {
+  std::string list = "[0";
+  for (std::size_t i = 1; i < kMostTextBytes / 6; ++i) list += ",0";
+  ProjectDocument document = parseProjectDocument(readTextFile(file()), "p");
+  document.unknown = "{\"later\":" + list + "]}";
+  writeProjectDocument(folder(), document);
+  EXPECT_EQ(parseProjectDocument(readTextFile(file()), "p").unknown, document.unknown);
 }
 
 }  // namespace
