@@ -14,6 +14,8 @@ FieldValue parseFieldValue(std::string_view text) {
   const nlohmann::json j = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (j.is_discarded()) return std::string(text);
   if (j.is_boolean()) return j.get<bool>();
+  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
+  if (j.is_number_unsigned() && j.get<std::uint64_t>() > kMost) return j.get<double>();
   if (j.is_number_integer()) {
     const auto v = j.get<std::int64_t>();
     if (v >= std::numeric_limits<int>::min() && v <= std::numeric_limits<int>::max())

@@ -73,6 +73,19 @@ void readUnit(const nlohmann::json& j, const std::filesystem::path& file, Captur
   }
 }
 
+// Nothing hangs on the rate but how fast a take plays.
+void readRate(const nlohmann::json& j, const std::filesystem::path& file, CaptureDescription& d) {
+  constexpr double kLeast = 0.01, kMost = 10000;
+  if (!j.contains("fps")) return;
+  const double rate = finiteNumber(j, "fps", fmt::format("\"{}\"", file.string()));
+  if (rate >= kLeast && rate <= kMost) {
+    d.frames_per_second = rate;
+    return;
+  }
+  d.warnings.push_back(fmt::format("\"{}\": expected \"fps\" from {} to {}, found {}; {} is taken",
+                                   file.string(), kLeast, kMost, rate, d.frames_per_second));
+}
+
 CaptureDescription describe(const nlohmann::json& j, const std::filesystem::path& folder,
                             const std::filesystem::path& file) {
   if (!j.is_object() || !j.contains("cameras") || !j["cameras"].is_object()) {
@@ -81,7 +94,7 @@ CaptureDescription describe(const nlohmann::json& j, const std::filesystem::path
   CaptureDescription d;
   d.layout = "dataset.json";
   d.name = j.value("name", folder.filename().string());
-  if (j.contains("fps")) d.frames_per_second = finiteNumber(j, "fps", fmt::format("\"{}\"", file.string()));
+  readRate(j, file, d);
   d.up = upOf(j);
   readUnit(j, file, d);
   for (const auto& [name, camera] : j["cameras"].items()) {

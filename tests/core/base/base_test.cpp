@@ -92,6 +92,13 @@ TEST(Fields, JsonHoldsEveryValue) {
   EXPECT_THROW(parseFieldValue("[1]"), Error);
 }
 
+TEST(Fields, ANumberThatNoIntegerHoldsDoesNotWrap) {
+  EXPECT_EQ(std::get<double>(parseFieldValue("18446744073709551615")), 18446744073709551615.0);
+  EXPECT_EQ(std::get<double>(parseFieldValue("4294967297")), 4294967297.0);
+  EXPECT_EQ(std::get<double>(parseFieldValue("-4294967297")), -4294967297.0);
+  EXPECT_EQ(std::get<int>(parseFieldValue("2147483647")), 2147483647);
+}
+
 TEST(Progress, PartsCoverTheirShareAndReportsNeverGoBack) {
   std::vector<double> seen;
   Progress p({}, [&](const ProgressReport& r) { seen.push_back(r.fraction); });

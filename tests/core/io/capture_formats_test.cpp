@@ -123,6 +123,29 @@ TEST(CaptureFormats, CalibrationsThatAreNotFiniteNameFileCameraAndField) {
   EXPECT_THAT(errorOf(dir.path()), AllOf(HasSubstr("images.bin"), HasSubstr("\"a\"")));
 }
 
+TEST(CaptureFormats, ARateThatNothingPlaysAtIsToldAndNotTaken) {
+  const TempDir dir;
+  putPictures(dir.path());
+  for (const char* rate : {"0", "-5", "1e308", "1e-300"}) {
+    put(dir / "dataset.json", replaced(kDataset, "\"fps\": 25", std::string("\"fps\": ") + rate));
+    const ImportedCapture c = openCapture(dir.path());
+    EXPECT_EQ(c.set.frames_per_second, 30);
+    EXPECT_THAT(c.warnings, ::testing::Contains(HasSubstr("\"fps\" from 0.01 to 10000")));
+  }
+}
+
+TEST(CaptureFormats, DeepListsAreRefusedAndLongOnesNotRepeated) {
+  const TempDir dir;
+  putPictures(dir.path());
+  const auto with = [&](const std::string& fx) {
+    put(dir / "dataset.json", replaced(kDataset, "\"fx\": 30", "\"fx\": " + fx));
+    return errorOf(dir.path());
+  };
+  EXPECT_THAT(with(std::string(300000, '[') + std::string(300000, ']')),
+              AllOf(HasSubstr("dataset.json"), HasSubstr("levels")));
+  EXPECT_LT(with("\"" + std::string(5000, 'x') + "\"").size(), 300u);
+}
+
 TEST(CaptureFormats, ValuesOfAnotherTypeOrSizeAreBadInputAndNoCrash) {
   const TempDir dir;
   putPictures(dir.path());
