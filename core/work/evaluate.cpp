@@ -75,7 +75,7 @@ RenderRequest picturesFor(const EvaluateRequest& request, const GaussianSequence
 
 EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, ComputeDevice& device, Progress& progress) {
   GroundTruth truth = openGroundTruth(request.ground_truth);
-  truth.unit_m = inverse(request.project.capture().capture_from_world).scale;
+  align(truth, request.project.capture());
   EvaluateOutcome e;
   if (!request.pictures.empty()) {
     e.table = scorePictures(truth, request.pictures, progress, e.each);

@@ -84,7 +84,7 @@ class MotionScorer {
     progress_.check();
     if (!truth_) return m;
     m.skin = readTracks(truth_->folder / "gt/tracks" / (name(index) + ".ply"),
-                        inverse(sequence_.captureFromWorld()));
+                        inverse(truth_->truth_from_capture * sequence_.captureFromWorld()));
     if (!m.skin) return m;
     const auto resident = residentOf(device_, *m.result);
     for (const Camera& camera : cameras_) {

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json_words.h"
+#include "core/io/capture_description.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
@@ -85,10 +86,14 @@ Planes clipped(Planes p) {
   return p;
 }
 
-Planes inMetres(Planes lengths, const GroundTruth& t) {
-  if (t.unit_m == 1) return lengths;
-  for (float& v : lengths.values) v = static_cast<float>(t.unit_m * v);
+Planes scaled(Planes lengths, double factor) {
+  if (factor == 1) return lengths;
+  for (float& v : lengths.values) v = static_cast<float>(factor * v);
   return lengths;
+}
+
+Mesh inTruth(const Mesh& mesh, const GroundTruth& t) {
+  return t.truth_from_capture == Similarity3{} ? mesh : transformed(mesh, t.truth_from_capture);
 }
 
 Mesh inMetres(const Mesh& mesh, const GroundTruth& t) {
@@ -182,7 +187,8 @@ void scoreMeshes(const GroundTruth& t, const fs::path& pictures, const Progress&
   for (const std::string& frame : t.gt_frames) {
     const fs::path p = pictures / "mesh" / (frame + ".ply"), g = t.folder / "gt/mesh" / (frame + ".ply");
     if (!fs::exists(p) || !fs::exists(g)) continue;
-    const Chamfer c = chamferDistance(inMetres(readMeshPly(p), t), inMetres(readMeshPly(g), t), progress);
+    const Chamfer c =
+        chamferDistance(inMetres(inTruth(readMeshPly(p), t), t), inMetres(readMeshPly(g), t), progress);
     progress.check();
     sum["chamfer_mm"] += c.chamfer_mm;
     sum["pred_to_gt_mm"] += c.prediction_to_truth_mm;
@@ -214,6 +220,16 @@ std::vector<std::string> strings(const nlohmann::json& j, const char* key) {
   return j.contains(key) ? j[key].get<std::vector<std::string>>() : std::vector<std::string>{};
 }
 
+// None where the description tells of no cameras: pictures alone can be scored.
+std::vector<DescribedCamera> camerasOf(const fs::path& folder) {
+  try {
+    const std::optional<CaptureDescription> described = readDatasetJson(folder);
+    return described ? described->cameras : std::vector<DescribedCamera>();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 GroundTruth openGroundTruth(const fs::path& folder) {
@@ -231,6 +247,37 @@ GroundTruth openGroundTruth(const fs::path& folder) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\" cannot be understood: {}", file.string(), jsonComplaint(e)));
   }
+}
+
+void align(GroundTruth& truth, const CaptureSet& capture) {
+  constexpr double kSame = 1e-6, kFits = 1e-3;  // of the cameras' spread
+  const Similarity3 capture_from_world = capture.capture_from_world;
+  truth.unit_m = inverse(capture_from_world).scale;
+  std::vector<std::pair<dvec3, dvec3>> pairs;  // centres: of the capture, of the data set
+  const std::vector<DescribedCamera> true_cameras = camerasOf(truth.folder);
+  for (const View& view : capture.views) {
+    for (const DescribedCamera& c : true_cameras)
+      if (c.name == view.name)
+        pairs.emplace_back(centerOf(transformed(view.camera, capture_from_world)), centerOf(c.camera));
+  }
+  if (pairs.size() < 2) return;
+  dvec3 middle(0), true_middle(0);
+  for (const auto& [here, there] : pairs) middle += here, true_middle += there;
+  middle /= static_cast<double>(pairs.size()), true_middle /= static_cast<double>(pairs.size());
+  double spread = 0, true_spread = 0;
+  for (const auto& [here, there] : pairs)
+    spread += glm::distance(here, middle), true_spread += glm::distance(there, true_middle);
+  const double scale = true_spread / spread;
+  const Similarity3 found{dmat3(1.0), scale, true_middle - scale * middle};
+  if (!std::isfinite(scale) || !(scale > 0)) return;
+  const double size = true_spread / static_cast<double>(pairs.size());
+  const bool fits = std::all_of(pairs.begin(), pairs.end(), [&](const auto& p) {
+    return glm::distance(found * p.first, p.second) < kFits * size;
+  });
+  const bool same = std::abs(scale - 1) < kSame && glm::length(found.translation) < kSame * size;
+  if (!fits || same) return;
+  truth.truth_from_capture = found;
+  truth.unit_m /= scale;
 }
 
 ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progress& progress,
@@ -259,7 +306,8 @@ ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progres
   if (const std::vector<Triple> triples = load(t, pictures, "depth", asValue, progress); !triples.empty()) {
     Scores s{{"mae_mm", 0}, {"pictures", static_cast<double>(triples.size())}};
     for (const Triple& d : triples) {
-      const double error = depthErrorMm(inMetres(d.prediction, t), inMetres(d.truth, t), d.mask);
+      const double error = depthErrorMm(scaled(d.prediction, t.unit_m * t.truth_from_capture.scale),
+                                        scaled(d.truth, t.unit_m), d.mask);
       each[d.frame][d.camera]["depth.mae_mm"] = error;
       s["mae_mm"] += error / s["pictures"];
     }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/math/similarity3.h"
+#include "core/scene/capture.h"
 #include "core/work/scores.h"
 
 namespace beam {
@@ -15,10 +17,17 @@ namespace beam {
 struct GroundTruth {
   std::filesystem::path folder;  // the data set's; gt/ lies inside
   std::vector<std::string> test_cameras, frames, gt_frames, environments;
-  double unit_m = 1;  // metres a unit of its depth and meshes, and of those that are compared to them
+  double unit_m = 1;  // metres a unit of its depth and meshes
+  // From the axes and unit of what is compared to them.
+  Similarity3 truth_from_capture = {};
 };
 // Throws Error{Data} when the folder has no dataset.json or no gt/.
 GroundTruth openGroundTruth(const std::filesystem::path& folder);
+
+// Takes unit, origin and scale from the cameras that `capture` and the data set both have, so that a copy of
+// the data set in another unit is scored as the original. Axes are the same. With fewer than two cameras, or
+// others, both count as the same.
+void align(GroundTruth& truth, const CaptureSet& capture);
 
 // Scores what is in `pictures` (missing pictures are left out); throws Error{Data} when nothing can be
 // scored. `each` also gets every picture's own scores.

@@ -62,9 +62,9 @@ float medianDepth(const fs::path& file) {
   return depths.at(depths.size() / 2);
 }
 
-double scoreOf(const fs::path& project, const char* map) {
+double scoreOf(const fs::path& project, const char* map, const char* score = "psnr") {
   const nlohmann::json j = nlohmann::json::parse(readTextFile(project / "evaluation.json"));
-  return j.at(map).at("psnr").get<double>();
+  return j.at(map).at(score).get<double>();
 }
 
 Said beam(const TempDir& dir, const Words& words) { return Running(dir.path(), words).wait(); }
@@ -86,7 +86,7 @@ TEST(Unit, TheSampleInMillimetresGivesTheSameResultsAndGoesOutInMillimetres) {
          {Words{"export", project, "--format", "ply", "--out", out("ply")},
           Words{"render", project, "--channels", "depth,mesh", "--cameras", "cam00", "--out", out("shapes")},
           Words{"render", project, "--channels", "rgb,ao,base_color", "--out", out("pictures")},
-          Words{"evaluate", project, "--ground-truth", truth, "--pictures", out("pictures")}}) {
+          Words{"evaluate", project, "--ground-truth", truth}}) {
       const Said said = beam(dir, command);
       ASSERT_EQ(said.code, 0) << said.err;
     }
@@ -103,6 +103,10 @@ TEST(Unit, TheSampleInMillimetresGivesTheSameResultsAndGoesOutInMillimetres) {
   EXPECT_NEAR(medianDepth(dir / "mm/shapes/depth/cam00/000001.exr") / (1000 * metres), 1, 0.01);
   for (const char* map : {"rgb", "ao", "base_color"})
     EXPECT_NEAR(scoreOf(dir / "mm.beam", map), scoreOf(dir / "m.beam", map), 0.2) << map;
+  for (const auto& [map, score] : {std::pair{"mesh", "chamfer_mm"}, std::pair{"depth", "mae_mm"}}) {
+    const double metres_say = scoreOf(dir / "m.beam", map, score);
+    EXPECT_NEAR(scoreOf(dir / "mm.beam", map, score) / metres_say, 1, 0.05) << map << " " << metres_say;
+  }
   EXPECT_THAT(readTextFile(dir / "mm.beam/project.json"), HasSubstr("\"unit_m\": 0.001"));
 }
 
