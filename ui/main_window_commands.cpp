@@ -100,7 +100,8 @@ QString MainWindow::refusalToWork() const {
 QString MainWindow::refusalToEvaluate() const {
   if (const QString why = refusalToWork(); !why.isEmpty()) return why;
   if (!held_out_)
-    return "No camera with photographs is held out: make the project with beam new --hold-out to keep some.";
+    return "No held-out camera has photographs of its own: a new project can keep some cameras out of the "
+           "fit.";
   if (!anySolved(*model_.survey())) return "No frame is solved yet: run one first.";
   if (cannotBeWritten(model_.project())) return "The project is read-only: its scores could not be kept.";
   return {};

@@ -48,6 +48,16 @@ void tellPlacement(const Project& project, Console& console) {
   console.info(toText(placement) + (given ? "" : " (--unit says otherwise)"));
 }
 
+// What was solved in another unit or from another origin is not found any more.
+void tellOtherPlacement(const std::optional<CapturePlacement>& before, const Project& project,
+                        Console& console) {
+  if (!before) return;
+  const CapturePlacement now = project.imported().placement;
+  if (now.unit_m == before->unit_m && now.origin == before->origin) return;
+  console.warning(fmt::format("{} (before: {}); what was solved for that is kept and does not apply now",
+                              toText(now), toText(*before)));
+}
+
 std::string statusOf(const Project& project, bool json) {
   const std::vector<LeftOutCamera> left_out = leftOutCameras(project);
   if (!json) {
@@ -82,8 +92,12 @@ void addProcessCommand(CLI::App& app, CommandContext& context) {
     context.action = [a, &context] {
       const bool made = !Project::isProject(a->project);
       Project project = projectFor(a->project, a->capture, context.services);
+      const std::optional<CapturePlacement> before = project.world();
       applyFlags(project, a->project_flags);
-      if (made) tellPlacement(project, context.console);
+      if (made)
+        tellPlacement(project, context.console);
+      else
+        tellOtherPlacement(before, project, context.console);
       return runProject(std::move(project), a->run, context);
     };
   });
@@ -118,7 +132,9 @@ void addRunCommand(CLI::App& app, CommandContext& context) {
   command->callback([a, &context] {
     context.action = [a, &context] {
       Project project = Project::open(a->project, context.services.pipeline);
+      const std::optional<CapturePlacement> before = project.world();
       applyFlags(project, a->project_flags);
+      tellOtherPlacement(before, project, context.console);
       return runProject(std::move(project), a->run, context);
     };
   });

@@ -167,11 +167,13 @@ std::string toText(const CapturePlacement& p) {
 std::vector<std::string> doubtsOf(const CapturePlacement& p, std::string_view capture) {
   const bool named = p.from == UnitFrom::Given || p.from == UnitFrom::Description;
   if (named && p.height > 0 && !plausible(p.height * p.unit_m)) {
-    return {
-        fmt::format("\"{}\": expected a subject of {} to {} m, found {} m in {}, as {} says; if that is not "
-                    "so, name the capture's unit with --unit",
-                    capture, kSmallest_m, kTallest_m, amount(p.height * p.unit_m), nameOfUnit(p.unit_m),
-                    p.from == UnitFrom::Given ? "--unit" : "the description")};
+    const bool given = p.from == UnitFrom::Given;
+    return {fmt::format(
+        "\"{}\": expected a subject of {} to {} m, found {} m in {}, as {} says; {} units fit "
+        "{}: {}",
+        capture, kSmallest_m, kTallest_m, amount(p.height * p.unit_m), nameOfUnit(p.unit_m),
+        given ? "--unit" : "the description", amount(p.height), nameOfUnit(unitOfHeight(p.height)),
+        given ? "take --unit away or name that" : "name that with --unit")};
   }
   if (p.from == UnitFrom::Cameras) {
     return {

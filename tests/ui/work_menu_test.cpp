@@ -149,7 +149,7 @@ class WorkMenuWithoutTests : public WorkMenu {
 TEST_F(WorkMenuWithoutTests, EvaluateNeedsAHeldOutCamera) {
   testing::solvedStandIn(folder.path(), {.held_out = 0, .frames = 1});
   ASSERT_TRUE(open(folder / "capture.beam"));
-  EXPECT_TRUE(refusal("evaluate").starts_with("No camera with photographs is held out"));
+  EXPECT_TRUE(refusal("evaluate").starts_with("No held-out camera has photographs"));
   EXPECT_EQ(refusal("report"), "");
 }
 

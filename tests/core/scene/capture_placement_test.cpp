@@ -88,7 +88,8 @@ TEST(UnitRule, WithoutMasksOnlyCamerasOutOfEveryRangeScale) {
 TEST(UnitRule, ANamedUnitThatMakesNoPersonIsKeptAndDoubted) {
   const CapturePlacement p = placed(tall(1712), {{}, 1.0});
   EXPECT_EQ(p.unit_m, 1);
-  EXPECT_THAT(doubtsOf(p, "take"), ::testing::ElementsAre(HasSubstr("1,712 m in metres")));
+  EXPECT_THAT(doubtsOf(p, "take"), ::testing::ElementsAre(::testing::AllOf(HasSubstr("1,712 m in metres"),
+                                                                           HasSubstr("fit millimetres"))));
   EXPECT_THAT(doubtsOf(placed(tall(1712), {1.0, {}}), "take"),
               ::testing::ElementsAre(HasSubstr("--unit says")));
   EXPECT_THAT(doubtsOf(placed(tall(1.7), {{}, 1.0}), "take"), ::testing::IsEmpty());
