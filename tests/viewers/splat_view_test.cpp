@@ -98,6 +98,36 @@ TEST_F(SplatHands, FFramesTheSubjectFromWhereOneLooksAndHGoesHome) {
   EXPECT_EQ(view.state().orbit.azimuth_rad, OrbitCamera{}.azimuth_rad);
 }
 
+TEST_F(SplatHands, TheTitleIsOfThePictureThatIsSeenWhileFramesPass) {
+  ASSERT_TRUE(settle());
+  view.setPassing(2);
+  view.setScene(sceneOf(threeBalls()), "frame 1");
+  EXPECT_TRUE(view.title().contains("frame 0")) << view.title().toStdString();
+  ASSERT_TRUE(waitFor([&] { return view.title().contains("frame 1"); }));
+  view.setPassing(0);
+  ASSERT_TRUE(settle());
+  EXPECT_TRUE(view.title().contains("frame 1"));
+}
+
+TEST_F(SplatHands, WhatIsUnderThePointerIsReadAnewWithEveryPicture) {
+  ASSERT_TRUE(settle());
+  QString said;
+  QObject::connect(&view, &SplatView::hovered, &view, [&](const QString& words) { said = words; });
+  const dvec2 red = pixelOf(vec3(0, 0.6f, 0));
+  QMouseEvent move(QEvent::MouseMove, QPointF(red.x, red.y), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
+  QApplication::sendEvent(&view, &move);
+  EXPECT_TRUE(said.contains("Colour")) << said.toStdString();
+  view.setChannel(channelOf(kDepthChannel));
+  ASSERT_TRUE(settle());
+  EXPECT_TRUE(said.contains("Depth")) << said.toStdString();
+  QEvent leave(QEvent::Leave);
+  QApplication::sendEvent(&view, &leave);
+  EXPECT_TRUE(said.isEmpty());
+  view.setChannel(channelOf(kRgbChannel));
+  ASSERT_TRUE(settle());
+  EXPECT_TRUE(said.isEmpty());
+}
+
 TEST_F(SplatHands, TheNumberPadLooksAlongTheAxes) {
   ASSERT_TRUE(settle());
   EXPECT_TRUE(press(Qt::Key_3, Qt::KeypadModifier));

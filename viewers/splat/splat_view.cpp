@@ -309,7 +309,7 @@ QString SplatView::title() const {
   } else {
     parts << "free camera";
   }
-  if (!caption_.isEmpty()) parts << caption_;
+  if (const QString& caption = hasShown() ? shown_caption_ : caption_; !caption.isEmpty()) parts << caption;
   if (state_.exposure_stops != 0) parts << QString::asprintf("exposure %+.2f stops", state_.exposure_stops);
   return parts.join(" · ");
 }

@@ -60,6 +60,8 @@ class SplatView final : public PictureCanvas {
   bool handleKey(const QKeyEvent& event);
   // The newest full-size picture is on the screen, as good as it gets.
   bool settled() const;
+  // What stands over the picture: its channel, camera and caption, though a newer one is asked for already.
+  QString title() const;
   // The newest picture that was asked for is on the screen, whatever its size.
   bool upToDate() const { return !hasScene() || shown_ticket_ == newest_ticket_; }
   // Frames pass by: every scene is drawn once, at the width and height divided by this; 0: they do not.
@@ -97,6 +99,7 @@ class SplatView final : public PictureCanvas {
     SplatRequest request;
     int divisor = 1;
     std::uint64_t ticket = 0;
+    QString caption;
   };
 
   struct Drawing;
@@ -124,16 +127,16 @@ class SplatView final : public PictureCanvas {
   void reportHover(QPointF position);
   Camera cameraFor(int width_px, int height_px) const;
   QRectF photoFrame() const;
-  QString title() const;
   QString lackText() const;
   QString noteText() const;
   Bounds sceneBounds() const;
 
   SceneRendererFactory new_renderer_;
   std::shared_ptr<SplatRenderer> renderer_;
-  RenderScene scene_;  // the light is in it as the state says
-  QString caption_, light_name_;
-  QString light_being_read_;  // its name; empty: none is
+  RenderScene scene_;                             // the light is in it as the state says
+  QString caption_, shown_caption_, light_name_;  // caption_: of what is asked for
+  std::optional<QPointF> pointer_;                // over the view
+  QString light_being_read_;                      // its name; empty: none is
   std::shared_ptr<const CaptureSet> capture_;
   FrameIndex frame_;
   ViewState state_;

@@ -54,7 +54,8 @@ void SplatView::request(int divisor) {
                               .sky = state_.sky,
                               .depth_limits = state_.depth_limits},
                   .divisor = divisor,
-                  .ticket = ++newest_ticket_};
+                  .ticket = ++newest_ticket_,
+                  .caption = caption_};
   if (drawing_ && drawing_->gave) drawing_->stop.request_stop();
   drawing_ = std::make_shared<Drawing>();
   if (renderer_->abilities().needs_context) {
@@ -107,6 +108,7 @@ void SplatView::take(SplatPicture picture, const Wish& wish) {
   if (!hasScene()) return;
   shown_ = std::move(picture);
   shown_ticket_ = wish.ticket;
+  shown_caption_ = wish.caption;
   shown_divisor_ = wish.divisor;
   read_back_.clear();
   if (shownTexture() != 0 && !fixedLimits(wish.request, shown_.channel))
@@ -115,6 +117,7 @@ void SplatView::take(SplatPicture picture, const Wish& wish) {
     half_milliseconds_ = std::lerp(halfPictureMilliseconds(), shown_.milliseconds, kNewest);
   if (wish.divisor == 1 && shown_.milliseconds > 0) full_milliseconds_ = shown_.milliseconds;
   setPicture(0, shown_.pixels.empty() ? nullptr : std::make_shared<Image<u8vec4>>(std::move(shown_.pixels)));
+  if (pointer_ && (shownTexture() == 0 || settled())) reportHover(*pointer_);  // reading back takes a moment
   Q_EMIT pictureShown();
 }
 

@@ -78,7 +78,10 @@ void SplatView::focusAt(QPointF position) {
   changed(Pace::Resting);
 }
 
-void SplatView::leaveEvent(QEvent*) { Q_EMIT hovered({}); }
+void SplatView::leaveEvent(QEvent*) {
+  pointer_.reset();
+  Q_EMIT hovered({});
+}
 
 ivec2 SplatView::pixelAt(QPointF position, int width_px, int height_px) const {
   return {std::clamp(static_cast<int>(position.x() * width_px / width()), 0, width_px - 1),
@@ -86,6 +89,7 @@ ivec2 SplatView::pixelAt(QPointF position, int width_px, int height_px) const {
 }
 
 void SplatView::reportHover(QPointF position) {
+  pointer_ = position;
   const Planes& values = hostValues(shown_.channel.id);
   const Planes& alpha = hostValues(kAlphaChannel);
   if (alpha.empty()) return;
