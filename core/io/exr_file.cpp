@@ -6,6 +6,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <cstring>
@@ -152,7 +153,7 @@ Planes readExr(const std::filesystem::path& path, const std::vector<std::string>
 }
 
 void writeExr(const std::filesystem::path& path, const Planes& planes,
-              const std::vector<std::string>& channels, ExrPrecision precision) {
+              const std::vector<std::string>& channels, ExrPrecision precision, const FileNotes& notes) {
   if (channels.size() != static_cast<std::size_t>(planes.channels)) {
     throw Error(Error::Kind::Bug, "as many channel names as planes are needed to write an EXR picture");
   }
@@ -160,6 +161,7 @@ void writeExr(const std::filesystem::path& path, const Planes& planes,
   {
     Imf::Header header(planes.width, planes.height);
     header.compression() = Imf::PIZ_COMPRESSION;
+    for (const auto& [name, text] : notes) header.insert(name, Imf::StringAttribute(text));
     const Imf::PixelType type = precision == ExrPrecision::Half ? Imf::HALF : Imf::FLOAT;
     Imf::FrameBuffer frame;
     std::vector<half> halves;

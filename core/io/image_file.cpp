@@ -3,6 +3,7 @@
 #include "core/io/image_file.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
@@ -156,9 +157,27 @@ cv::Mat matOf(const Image<u8vec3>& image) {
   return m;
 }
 
-void writeEncoded(const std::filesystem::path& path, const cv::Mat& m) {
+void appendBigEndian(std::vector<unsigned char>& out, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<unsigned char>(value >> shift));
+}
+
+// Length, type, data, CRC of type and data (PNG specification 5.3).
+void appendPngChunk(std::vector<unsigned char>& out, const std::string& type, const std::string& data) {
+  appendBigEndian(out, static_cast<std::uint32_t>(data.size()));
+  const std::string content = type + data;
+  out.insert(out.end(), content.begin(), content.end());
+  appendBigEndian(out, static_cast<std::uint32_t>(::crc32_z(
+                           0, reinterpret_cast<const unsigned char*>(content.data()), content.size())));
+}
+
+void writeEncoded(const std::filesystem::path& path, const cv::Mat& m, bool srgb, const FileNotes& notes) {
+  constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR, which comes first
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", m, bytes)) throw Error(Error::Kind::Bug, "cannot encode a PNG picture");
+  std::vector<unsigned char> chunks;
+  if (srgb && !notes.empty()) appendPngChunk(chunks, "sRGB", std::string(1, '\0'));  // perceptual intent
+  for (const auto& [name, text] : notes) appendPngChunk(chunks, "tEXt", name + '\0' + text);
+  bytes.insert(bytes.begin() + kHeaderEnd, chunks.begin(), chunks.end());
   writeFileAtomically(path, std::as_bytes(std::span(bytes)));
 }
 
@@ -222,8 +241,8 @@ Image<vec3> readRadiance(const std::filesystem::path& path) {
   return out;
 }
 
-void writePng(const std::filesystem::path& path, const Image<u8vec3>& image) {
-  writeEncoded(path, matOf(image));
+void writePng(const std::filesystem::path& path, const Image<u8vec3>& image, const FileNotes& notes) {
+  writeEncoded(path, matOf(image), image.encoding == Encoding::Srgb, notes);
 }
 
 std::vector<std::byte> encodeJpeg(const Image<u8vec3>& image, int quality) {
@@ -235,9 +254,9 @@ std::vector<std::byte> encodeJpeg(const Image<u8vec3>& image, int quality) {
   return {all.begin(), all.end()};
 }
 
-void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image) {
+void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image, const FileNotes& notes) {
   const cv::Mat m(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data()));
-  writeEncoded(path, m);
+  writeEncoded(path, m, false, notes);
 }
 
 }  // namespace beam

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/io/written_by.h"
 
 namespace beam {
 
@@ -37,15 +38,17 @@ Image<vec3> readRadiance(const std::filesystem::path& path);
 Planes readExr(const std::filesystem::path& path, const std::vector<std::string>& channels);
 std::vector<std::string> exrChannels(const std::filesystem::path& path);
 
-void writePng(const std::filesystem::path& path, const Image<u8vec3>& image);
-void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image);
+// With notes also the colour state, of an sRGB picture, for programs that ask for it; without, pixels alone.
+void writePng(const std::filesystem::path& path, const Image<u8vec3>& image, const FileNotes& notes = {});
+void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image,
+              const FileNotes& notes = {});
 
 // A JPEG picture in memory; quality in [0, 100].
 std::vector<std::byte> encodeJpeg(const Image<u8vec3>& image, int quality);
 
 enum class ExrPrecision { Half, Float };
-// One channel a plane, PIZ-compressed, named as given ("Y", or "R" "G" "B").
+// One channel a plane, PIZ-compressed, named as given ("Y", or "R" "G" "B"); notes are string attributes.
 void writeExr(const std::filesystem::path& path, const Planes& planes,
-              const std::vector<std::string>& channels, ExrPrecision precision);
+              const std::vector<std::string>& channels, ExrPrecision precision, const FileNotes& notes = {});
 
 }  // namespace beam

@@ -76,14 +76,14 @@ std::vector<vec2> uvOf(const PlyElement& vertex) {
 
 }  // namespace
 
-void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh) {
+void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh, const FileNotes& notes) {
   const bool normals = !mesh.vertices.empty() && mesh.normals.size() == mesh.vertices.size();
   const bool uv = !mesh.vertices.empty() && mesh.uv.size() == mesh.vertices.size();
   std::string out = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
-      "float z\n{}{}"
+      "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty float x\nproperty float "
+      "y\nproperty float z\n{}{}"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      mesh.vertices.size(), normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+      plyComments(notes), mesh.vertices.size(), normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
       uv ? "property float s\nproperty float t\n" : "", mesh.triangles.size());
   const std::size_t row = 12 + (normals ? 12 : 0) + (uv ? 8 : 0);
   out.reserve(out.size() + mesh.vertices.size() * row + mesh.triangles.size() * 13);

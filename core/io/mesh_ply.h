@@ -5,14 +5,15 @@
 
 #include <filesystem>
 
+#include "core/io/written_by.h"
 #include "core/scene/capture.h"
 #include "core/scene/mesh.h"
 #include "core/scene/pose.h"
 
 namespace beam {
 
-// Normals and texture positions as nx ny nz and s t, where every vertex has some.
-void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh);
+// Normals and texture positions as nx ny nz and s t, where every vertex has some; notes as comments.
+void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh, const FileNotes& notes = {});
 void writePointsPly(const std::filesystem::path& path, const PointCloud& points);
 
 // Polygons are fanned; a file without faces gives a mesh without triangles. Counts are checked against the

@@ -256,6 +256,12 @@ std::optional<std::size_t> PlyElement::column(const std::string& property) const
 
 std::vector<PlyElement> readPly(const std::filesystem::path& path) { return PlyReader(path).read(); }
 
+std::string plyComments(const FileNotes& notes) {
+  std::string lines;
+  for (const auto& [name, text] : notes) lines += fmt::format("comment {} {}\n", name, text);
+  return lines;
+}
+
 const PlyElement* findElement(const std::vector<PlyElement>& elements, const std::string& name) {
   for (const PlyElement& e : elements) {
     if (e.name == name) return &e;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/io/written_by.h"
+
 namespace beam {
 
 enum class PlyType { Char, UChar, Short, UShort, Int, UInt, Float, Double };
@@ -32,6 +34,9 @@ struct PlyElement {
   std::optional<std::size_t> column(const std::string& property) const;
   const float* row(std::size_t i) const { return values.data() + i * columns; }
 };
+
+// "comment NAME TEXT" lines for the header.
+std::string plyComments(const FileNotes& notes);
 
 // Throws Error{Data} naming the file: no PLY, unknown type, or fewer bytes than the counts need.
 std::vector<PlyElement> readPly(const std::filesystem::path& path);

@@ -128,14 +128,14 @@ Materials materialsOf(const PlyElement& vertex, const Columns& columns) {
 
 }  // namespace
 
-void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud,
-                   const Materials* materials) {
+void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud, const Materials* materials,
+                   const FileNotes& notes) {
   std::vector<std::string> columns = standardColumns();
   if (materials) {
     const std::vector<std::string> more = materialColumns();
     columns.insert(columns.end(), more.begin(), more.end());
   }
-  std::string out = "ply\nformat binary_little_endian 1.0\n";
+  std::string out = "ply\nformat binary_little_endian 1.0\n" + plyComments(notes);
   if (materials) out += "comment beam materials 1: linear base colour, ambient occlusion, value = 0.5 + SH\n";
   out += fmt::format("element vertex {}\n", cloud.size());
   for (const std::string& c : columns) out += "property float " + c + "\n";

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/io/written_by.h"
 #include "core/scene/gaussian_cloud.h"
 
 namespace beam {
@@ -17,7 +18,8 @@ struct SplatFile {
 };
 
 // Bytes depend on the values alone: no name, path or time enters them.
-void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud, const Materials* materials);
+void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud, const Materials* materials,
+                   const FileNotes& notes = {});
 SplatFile readSplatPly(const std::filesystem::path& path);
 
 }  // namespace beam

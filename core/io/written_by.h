@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a file says of the command that wrote it, so that a command replaces its own files and nobody else's.
+// It stands near the beginning of a file: a text chunk of PNG, an attribute of EXR, a comment of PLY, a meta
+// element of HTML, a member of JSON.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace beam {
+
+// "BEAM Studio, beam render" of "render".
+std::string writerOf(std::string_view command);
+
+// Whether the beginning of `file` names `command`; false also for what cannot be read.
+bool isWrittenBy(const std::filesystem::path& file, std::string_view command);
+
+// What a file says of itself beside its data: a name of ASCII letters and '_', and a text, each.
+using FileNotes = std::vector<std::pair<std::string, std::string>>;
+
+}  // namespace beam
