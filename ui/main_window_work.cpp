@@ -34,7 +34,7 @@ void MainWindow::writeReport() {
   if (file.isEmpty()) return;
   startTask(
       "The report",
-      [request = ReportRequest{project, file.toStdString()},
+      [request = ReportRequest{project, file.toStdString(), true},  // the dialog has asked
        device = services_.job_device](Progress& progress) { return report(request, *device, progress); },
       [this, file](const ReportOutcome& outcome) {
         QStringList lines{

@@ -38,6 +38,7 @@ struct CaptureDescription {
 std::optional<CaptureDescription> readDatasetJson(const std::filesystem::path& folder);
 std::optional<CaptureDescription> readTransformsJson(const std::filesystem::path& folder);
 std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder);
+bool hasColmapModel(const std::filesystem::path& folder);  // whether its files are there
 
 // Pictures of a camera folder by frame name (file stem); hidden files are none.
 std::map<std::string, std::filesystem::path> picturesIn(const std::filesystem::path& folder);

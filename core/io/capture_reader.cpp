@@ -293,6 +293,12 @@ ImportedCapture open(const fs::path& folder, const ImportOptions& options) {
 
 }  // namespace
 
+bool isCapture(const fs::path& folder) {
+  std::error_code out_of_reach;
+  return fs::is_regular_file(folder / "dataset.json", out_of_reach) ||
+         fs::is_regular_file(folder / "transforms.json", out_of_reach) || hasColmapModel(folder);
+}
+
 ImportedCapture openCapture(const fs::path& folder, const ImportOptions& options) {
   try {
     ImportedCapture capture = open(folder, options);

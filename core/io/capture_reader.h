@@ -27,6 +27,9 @@ struct ImportedCapture {
   std::vector<std::string> warnings;  // each a whole sentence; also logged
 };
 
+// Whether the folder holds a description that openCapture would read, right or wrong.
+bool isCapture(const std::filesystem::path& folder);
+
 // Throws Error{Data} when nothing usable is there; a damaged part that can be left out is left out with a
 // warning.
 ImportedCapture openCapture(const std::filesystem::path& folder, const ImportOptions& options = {});

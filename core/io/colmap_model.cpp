@@ -315,26 +315,40 @@ void addPictures(CaptureDescription& d, const ColmapModel& m, const std::filesys
   }
 }
 
-}  // namespace
+struct ModelPlace {
+  std::filesystem::path folder;
+  bool binary = false;
+};
 
-std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder) {
+std::optional<ModelPlace> findModel(const std::filesystem::path& folder) {
   for (const char* place : {"sparse/0", "sparse", "colmap/sparse/0", "."}) {
     const std::filesystem::path model = folder / place;
-    const bool binary =
-        std::filesystem::exists(model / "cameras.bin") && std::filesystem::exists(model / "images.bin");
-    const bool text =
-        std::filesystem::exists(model / "cameras.txt") && std::filesystem::exists(model / "images.txt");
-    if (!binary && !text) continue;
-    const ColmapModel m = binary ? readBinary(model) : readText(model);
-    CaptureDescription d;
-    d.layout = binary ? "COLMAP binary" : "COLMAP text";
-    d.name = folder.filename().string();
-    const std::filesystem::path pictures = folder / "images";
-    addPictures(d, m, std::filesystem::is_directory(pictures) ? pictures : folder, model);
-    d.points = pointCloudOf(m.points, m.colors);
-    return d;
+    const auto both = [&](const char* cameras, const char* images) {
+      std::error_code out_of_reach;
+      return std::filesystem::exists(model / cameras, out_of_reach) &&
+             std::filesystem::exists(model / images, out_of_reach);
+    };
+    if (both("cameras.bin", "images.bin")) return ModelPlace{model, true};
+    if (both("cameras.txt", "images.txt")) return ModelPlace{model, false};
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+bool hasColmapModel(const std::filesystem::path& folder) { return findModel(folder).has_value(); }
+
+std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder) {
+  const std::optional<ModelPlace> place = findModel(folder);
+  if (!place) return std::nullopt;
+  const ColmapModel m = place->binary ? readBinary(place->folder) : readText(place->folder);
+  CaptureDescription d;
+  d.layout = place->binary ? "COLMAP binary" : "COLMAP text";
+  d.name = folder.filename().string();
+  const std::filesystem::path pictures = folder / "images";
+  addPictures(d, m, std::filesystem::is_directory(pictures) ? pictures : folder, place->folder);
+  d.points = pointCloudOf(m.points, m.colors);
+  return d;
 }
 
 }  // namespace beam

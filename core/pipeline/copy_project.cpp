@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/io/file.h"
+#include "core/pipeline/output_target.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -32,6 +33,7 @@ void checkTarget(const fs::path& from, const fs::path& to) {
                             "it, not \"{}\"",
                             from.string(), to.string()));
   }
+  requireOutside(to);
   if (fs::exists(to) && !(fs::is_directory(to) && fs::is_empty(to))) {
     throw Error(Error::Kind::Usage,
                 fmt::format("\"{}\" exists and is not an empty folder; choose another name for the copy",

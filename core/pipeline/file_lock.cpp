@@ -91,7 +91,7 @@ std::string FileLock::shortHolderOf(const std::filesystem::path& path) {
   const std::size_t comma = whole.rfind(", process ");
   if (!whole.starts_with("host ") || comma == std::string::npos) return {};
   const std::string host = whole.substr(5, comma - 5), process = whole.substr(comma + 2);
-  return host == ownHost() ? process : process + " on host " + host;
+  return process + (host == ownHost() ? " on this machine" : " on host " + host);
 }
 
 FileLock::FileLock(FileLock&& other) noexcept

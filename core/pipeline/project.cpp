@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/lost_capture.h"
+#include "core/pipeline/output_target.h"
 #include "core/pipeline/presets.h"
 #include "core/pipeline/project_history.h"
 
@@ -60,6 +61,7 @@ Project Project::open(const fs::path& folder, std::shared_ptr<const PipelineSetu
 
 Project Project::create(const fs::path& folder, const ProjectDocument& document,
                         std::shared_ptr<const PipelineSetup> setup) {
+  requireOutside(folder);
   if (!isFree(folder)) {
     throw Error(Error::Kind::Usage,
                 fmt::format("\"{}\" exists and is not an empty folder; choose another name for the "

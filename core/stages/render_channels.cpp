@@ -53,20 +53,35 @@ Planes inFrame(const ChannelInfo& channel, const Planes& values, const Similarit
   return out;
 }
 
+fs::path channelFile(const std::string& folder, const std::string& camera, const std::string& frame,
+                     const ChannelInfo& channel) {
+  const std::string name = fmt::format("{}.{}", frame, extensionOf(channel.file));
+  return channel.id == kMeshChannel ? fs::path(folder) / name : fs::path(folder) / camera / name;
+}
+
+std::string relitFolder(const fs::path& environment) {
+  return std::string(kRelightChannel) + "_" + environment.stem().string();
+}
+
+std::string colorStateOf(const ChannelInfo& channel) {
+  if (channel.quantity != Quantity::Color) return "data";
+  return channel.file == FileForm::Png ? "sRGB" : "scene-linear Rec.709";
+}
+
 void writeChannel(const fs::path& file, const ChannelInfo& channel, const Planes& values,
-                  const Similarity3& frame_from_world) {
+                  const Similarity3& frame_from_world, const FileNotes& notes) {
   const bool three = componentsOf(channel) == 3;
   if (channel.file == FileForm::Png) {
     if (three)
-      writePng(file, bytesOf(values, channel.encoding == Encoding::Linear));
+      writePng(file, bytesOf(values, channel.encoding == Encoding::Linear), notes);
     else
-      writePng(file, bytesOf(values));
+      writePng(file, bytesOf(values), notes);
     return;
   }
   const bool half = channel.file == FileForm::HalfExr;
   writeExr(file, inFrame(channel, values, frame_from_world),
            three ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"},
-           half ? ExrPrecision::Half : ExrPrecision::Float);
+           half ? ExrPrecision::Half : ExrPrecision::Float, notes);
 }
 
 class ChannelWriter {
@@ -86,8 +101,7 @@ class ChannelWriter {
       logWarning("{}", lost);
     if (!relit_) return;
     for (const fs::path& file : request.environments) {
-      lights_.push_back({std::string(kRelightChannel) + "_" + file.stem().string(),
-                         std::make_shared<const Environment>(makeEnvironment(readRadiance(file)))});
+      lights_.push_back({relitFolder(file), std::make_shared<const Environment>(makeEnvironment(readRadiance(file)))});
     }
   }
 
@@ -125,11 +139,29 @@ class ChannelWriter {
     }
   }
 
+  // Its folder is there then.
   fs::path file(const std::string& folder, const std::string& camera, const std::string& name,
                 const ChannelInfo& channel) const {
-    const fs::path parent = request_.out / folder / camera;
-    fs::create_directories(parent);
-    return parent / fmt::format("{}.{}", name, extensionOf(channel.file));
+    const fs::path place = request_.out / channelFile(folder, camera, name, channel);
+    fs::create_directories(place.parent_path());
+    return place;
+  }
+
+  FileNotes notesOf(const ChannelInfo& channel, const std::string& folder, const std::string& camera,
+                    const std::string& frame) const {
+    if (request_.written_by.empty()) return {};
+    FileNotes notes = {{"Software", request_.written_by}, {"channel", folder}, {"frame", frame}};
+    if (!camera.empty()) notes.emplace_back("camera", camera);
+    if (channel.quantity != Quantity::Color || channel.id == kMeshChannel)
+      notes.emplace_back("axes", request_.world_frame ? "world" : "capture");
+    if (!channel.unit.empty()) {
+      const double metres = 1 / frame_from_world_.scale;
+      notes.emplace_back("unit", metres == 1 ? channel.unit : fmt::format("{} {}", metres, channel.unit));
+    }
+    if (channel.id == kMeshChannel) return notes;
+    notes.emplace_back("color_state", colorStateOf(channel));
+    if (channel.times_alpha) notes.emplace_back("alpha", "value x alpha, composited on black");
+    return notes;
   }
 
   void mesh(FrameIndex frame, const std::string& name) const {
@@ -137,8 +169,9 @@ class ChannelWriter {
     if (!m && sequence_.content(frame).interpolated)
       return logInfo("frame {} is interpolated: it has no mesh", name);
     if (!m) throw Error(Error::Kind::Data, fmt::format("frame {} has no mesh yet: run Surface first", name));
-    fs::create_directories(request_.out / kMeshChannel);
-    writeMeshPly(request_.out / kMeshChannel / (name + ".ply"), transformed(*m, frame_from_world_));
+    const ChannelInfo& channel = channelOf(kMeshChannel);
+    writeMeshPly(file(kMeshChannel, {}, name, channel), transformed(*m, frame_from_world_),
+                 notesOf(channel, kMeshChannel, {}, name));
   }
 
   // One of each channel; `folders` name them.
@@ -151,7 +184,7 @@ class ChannelWriter {
       for (std::size_t i = 0; i < channels.size(); ++i) {
         progress.check();
         writeChannel(file(folders[i], view.name, name, channels[i]), channels[i], *picture.channels[i].values,
-                     frame_from_world_);
+                     frame_from_world_, notesOf(channels[i], folders[i], view.name, name));
       }
     });
   }
@@ -198,6 +231,27 @@ void check(const RenderRequest& request, const RendererAbilities& abilities) {
 }
 
 }  // namespace
+
+std::vector<fs::path> channelFiles(const GaussianSequence& sequence, const RenderRequest& request) {
+  std::vector<fs::path> files;
+  for (const std::string& id : request.channels) {
+    const ChannelInfo& channel = channelOf(id);
+    std::vector<std::string> folders = {id};
+    if (id == kRelightChannel) {
+      folders.clear();
+      for (const fs::path& e : request.environments) folders.push_back(relitFolder(e));
+    }
+    for (const FrameIndex frame : request.frames) {
+      const std::string& name = nameOf(sequence, frame);
+      if (id == kMeshChannel) files.push_back(channelFile(id, {}, name, channel));
+      for (const std::string& folder : folders) {
+        for (const View& view : request.views)
+          if (id != kMeshChannel) files.push_back(channelFile(folder, view.name, name, channel));
+      }
+    }
+  }
+  return files;
+}
 
 void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, SceneRenderer& renderer,
                     Progress& progress) {

@@ -21,7 +21,14 @@ struct RenderRequest {
   std::vector<std::filesystem::path> environments;  // for "relight": a folder relight_<stem> each
   bool world_frame = false;  // normals and meshes in world axes instead of the capture's
   std::filesystem::path out;
+  // What files say wrote them (io/written_by.h), beside camera, frame, channel, unit, axes and colour state;
+  // empty: they say nothing.
+  std::string written_by = {};
 };
+
+// Every file that renderChannels would write, relative to `out`; of frames without a mesh that one too.
+std::vector<std::filesystem::path> channelFiles(const GaussianSequence& sequence,
+                                                const RenderRequest& request);
 
 // Throws Error{Usage} for an unknown channel, one that the renderer does not draw, or relight without a
 // panorama; Error{Data} when a frame is not solved as far as a channel needs. The renderer draws no textures.

@@ -5,10 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/splat_ply.h"
+#include "core/pipeline/output_target.h"
 #include "core/scene/transform.h"
 #include "core/stages/project_sequence.h"
 #include "core/work/selection.h"
@@ -16,9 +18,11 @@
 namespace beam {
 namespace {
 
+constexpr const char* kCommand = "export";
+
 // Writes whole files. `materials` may be null.
 using WriteFrame = void (*)(const std::filesystem::path& file, const GaussianCloud& cloud,
-                            const Materials* materials);
+                            const Materials* materials, const FileNotes& notes);
 
 struct Format {
   ExportFormat info;
@@ -40,14 +44,37 @@ const Format& formatOf(const std::string& id) {
 }
 
 void writeFrame(const GaussianFrame& frame, const Similarity3* frame_from_world, const Format& format,
-                const std::filesystem::path& file, const Progress& progress) {
+                const std::filesystem::path& file, const FileNotes& notes, const Progress& progress) {
   const Materials* materials = frame.materials ? &*frame.materials : nullptr;
-  if (!frame_from_world) return format.write(file, frame.cloud, materials);
+  if (!frame_from_world) return format.write(file, frame.cloud, materials, notes);
   const GaussianCloud cloud = transformed(frame.cloud, *frame_from_world);
   std::optional<Materials> turned;
   if (materials) turned = transformed(*materials, *frame_from_world);
   progress.check();
-  format.write(file, cloud, turned ? &*turned : nullptr);
+  format.write(file, cloud, turned ? &*turned : nullptr, notes);
+}
+
+// By number where every frame of the sequence has one of its own, else by name.
+std::vector<std::filesystem::path> filesOf(const std::vector<FrameLabel>& labels,
+                                           const std::vector<FrameLabel>& sequence, const Format& format) {
+  std::set<long long> numbers;
+  for (const FrameLabel& label : sequence)
+    if (label.number >= 0) numbers.insert(label.number);
+  const bool numbered = numbers.size() == sequence.size();
+  std::vector<std::filesystem::path> files;
+  for (const FrameLabel& label : labels) {
+    const std::string name = numbered ? fmt::format("{:06}", label.number) : label.name;
+    files.emplace_back(fmt::format("frame.{}.{}", name, format.info.extension));
+  }
+  return files;
+}
+
+FileNotes notesOf(const FrameLabel& label, bool world_frame, const Similarity3& capture_from_world) {
+  const double metres = world_frame ? 1 : 1 / capture_from_world.scale;
+  return {{"Software", writerOf(kCommand)},
+          {"frame", label.name},
+          {"axes", world_frame ? "world" : "capture"},
+          {"unit", metres == 1 ? "m" : fmt::format("{} m", metres)}};
 }
 
 }  // namespace
@@ -68,17 +95,19 @@ ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   const Similarity3 capture_from_world = sequence->captureFromWorld();
   if (const std::string lost = roundingWarning(capture_from_world); !request.world_frame && !lost.empty())
     logWarning("{}", lost);
-  std::filesystem::create_directories(request.out);
+  std::vector<FrameLabel> labels;
+  for (const FrameIndex frame : frames)
+    labels.push_back(sequence->frames()[static_cast<std::size_t>(frame.value)]);
+  const std::vector<std::filesystem::path> files = filesOf(labels, sequence->frames(), format);
+  requireFolderTarget(request.out, files, {kCommand, request.force});
   ExportOutcome outcome;
   progress.expect(static_cast<std::int64_t>(frames.size()));
-  for (const FrameIndex frame : frames) {
-    const FrameLabel& label = sequence->frames()[static_cast<std::size_t>(frame.value)];
-    const std::shared_ptr<const GaussianFrame> r = solvedFrame(*sequence, frame);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::shared_ptr<const GaussianFrame> r = solvedFrame(*sequence, frames[i]);
     progress.check();
-    outcome.files.push_back(
-        request.out / fmt::format("frame.{:06}.{}", std::max(0LL, label.number), format.info.extension));
+    outcome.files.push_back(request.out / files[i]);
     writeFrame(*r, request.world_frame ? nullptr : &capture_from_world, format, outcome.files.back(),
-               progress);
+               notesOf(labels[i], request.world_frame, capture_from_world), progress);
     progress.step();
   }
   outcome.interpolated = interpolatedOf(*sequence, frames);

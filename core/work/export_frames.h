@@ -25,6 +25,7 @@ struct ExportRequest {
   bool world_frame = false;    // world axes and metres instead of the capture's
   std::filesystem::path out;   // a folder; made when it is not there
   std::string format = "ply";  // of exportFormats()
+  bool force = false;          // of OutputRule
 };
 
 struct ExportOutcome {
@@ -32,7 +33,8 @@ struct ExportOutcome {
   std::vector<std::string> interpolated;     // names of those frames that are interpolated, not solved
 };
 
-// Throws Error{Usage} for words that choose nothing and an unknown format, Error{Data} for a frame without
+// Throws Error{Usage} for words that choose nothing, an unknown format and a place that requireFolderTarget
+// refuses, Error{Data} for a frame without
 // Gaussians, Error{Storage}, Cancelled: whole files are left then, of the frames that were done.
 ExportOutcome exportFrames(const ExportRequest& request, Progress& progress);
 

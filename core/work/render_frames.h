@@ -20,6 +20,7 @@ struct RenderFramesRequest {
   std::vector<std::filesystem::path> environments;  // for "relight"
   bool world_frame = false;  // normals, depth and meshes in world axes and metres instead of the capture's
   std::filesystem::path out;
+  bool force = false;  // of OutputRule
 };
 
 struct RenderFramesOutcome {
@@ -27,7 +28,7 @@ struct RenderFramesOutcome {
   std::vector<std::string> interpolated;  // names of those frames that are interpolated, not solved
 };
 
-// Throws Error{Usage} for words that choose nothing, Error{Data} when a frame is not solved as far as a
+// Throws Error{Usage} for words that choose nothing and a place that requireFolderTarget refuses, Error{Data} when a frame is not solved as far as a
 // channel needs, Error{Storage}, Cancelled: whole files are left then, of the pictures that were done.
 RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRenderer& renderer,
                                  Progress& progress);

@@ -10,6 +10,7 @@
 #include "core/base/json_words.h"
 #include "core/base/log.h"
 #include "core/io/file.h"
+#include "core/pipeline/output_target.h"
 #include "core/pipeline/version.h"
 #include "core/stages/project_sequence.h"
 #include "core/work/evaluate_over_time.h"
@@ -143,6 +144,7 @@ std::vector<std::string> findingsOf(const QualityHistory& history) {
 
 ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progress& progress) {
   const Project& project = request.project;
+  requireFileTarget(request.out, {kReportCommand, request.force});
   const auto sequence = sequenceOf(project, Shows::Solved);
   ReportPage page{
       project.name(), kProgramVersion, factsOf(project), {}, sequence->frames().size(), {}, {}, {}};

@@ -14,7 +14,8 @@ namespace beam {
 
 struct ReportRequest {
   Project project;
-  std::filesystem::path out;  // the page; what is there is replaced
+  std::filesystem::path out;  // the page
+  bool force = false;         // of OutputRule
 };
 
 struct ReportOutcome {
@@ -24,7 +25,7 @@ struct ReportOutcome {
   std::vector<std::string> findings;
 };
 
-// Throws Error{Data} when no frame has a result, Error{Storage}, Cancelled: then nothing is written.
+// Throws Error{Usage} for a place that requireFileTarget refuses, Error{Data} when no frame has a result, Error{Storage}, Cancelled: then nothing is written.
 ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progress& progress);
 
 }  // namespace beam

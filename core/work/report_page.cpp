@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/duration_text.h"
+#include "core/io/written_by.h"
 #include "core/work/report_style.h"
 #include "core/work/svg_chart.h"
 
@@ -57,9 +58,9 @@ class PageWriter {
   std::string write() {
     out_ = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><meta name=\"viewport\" "
-        "content=\"width=device-width, initial-scale=1\"/><title>{0}: quality report</title>\n"
+        "content=\"width=device-width, initial-scale=1\"/><meta name=\"generator\" content=\"{2}\"/><title>{0}: quality report</title>\n"
         "<style>{1}</style></head>\n<body><main>\n<header><p class=\"kind\">Quality report</p><h1>{0}</h1>",
-        escapedHtml(page_.project), kReportStyle);
+        escapedHtml(page_.project), kReportStyle, writerOf(kReportCommand));
     for (const auto& [label, words] : page_.facts) {
       if (label == "Capture") out_ += fmt::format("<p class=\"sub\">{}</p>", escapedHtml(words));
     }

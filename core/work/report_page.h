@@ -23,6 +23,7 @@ struct ReportPage {
   ScoreTable evaluation;  // the last one of the project
 };
 
+inline constexpr const char* kReportCommand = "report";  // pages say that it wrote them
 std::string toHtml(const ReportPage& page);
 
 }  // namespace beam

@@ -144,7 +144,8 @@ ImportedCapture openStandIn(const StandInSize& size) {
     imported.set.views.push_back(viewOf({.cameras = size.cameras, .size_px = size.size_px}, i));
   for (int i = size.cameras - size.held_out; i < size.cameras; ++i)
     imported.set.views[static_cast<std::size_t>(i)].split = Split::Test;
-  for (int f = 0; f < size.frames; ++f) imported.set.frames.push_back(fmt::format("{:06}", f));
+  for (int f = 0; f < size.frames; ++f)
+    imported.set.frames.push_back(fmt::format("{:06}{}", f, size.name_end));
   imported.set.frames_per_second = 25;
   imported.set.masks = MaskKind::Files;
   imported.set.source = std::make_shared<TurningSphere>(imported.set.views, size.size_px);

@@ -17,6 +17,7 @@ struct StandInSize {
   int held_out = 1;  // of them, the last ones
   int frames = 6;    // 000000, 000001, ...
   int size_px = 96, gaussians = 60;
+  const char* name_end = "";  // of frames, after the number
 };
 
 // The capture is any folder that exists; pictures of every camera and frame differ.

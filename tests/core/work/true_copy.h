@@ -14,9 +14,6 @@ namespace beam::testing {
 inline void makeTrueCopy(const Project& project, const std::filesystem::path& folder, ComputeDevice& device) {
   const std::filesystem::path truth = folder / "gt";
   std::filesystem::create_directories(truth);
-  writeFileAtomically(folder / "dataset.json",
-                      R"({"test_cameras": ["cam3"], "frame_names": ["000000", "000001"],
-                          "gt_frames": ["000000", "000001"], "relight_environments": []})");
   Progress progress;
   renderFrames({.project = project,
                 .channels = {"rgb", "base_color", "ao", "roughness", "normal", "depth", "alpha", "mesh"},
@@ -27,6 +24,9 @@ inline void makeTrueCopy(const Project& project, const std::filesystem::path& fo
                 .out = truth},
                *newCpuSceneRenderer(device), progress);
   std::filesystem::rename(truth / "alpha", truth / "mask");
+  writeFileAtomically(folder / "dataset.json",
+                      R"({"test_cameras": ["cam3"], "frame_names": ["000000", "000001"],
+                          "gt_frames": ["000000", "000001"], "relight_environments": []})");
 }
 
 }  // namespace beam::testing

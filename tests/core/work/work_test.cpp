@@ -90,6 +90,13 @@ TEST_F(Work, ExportFramesNamesItsFiles) {
   for (const fs::path& file : outcome.files) EXPECT_EQ(readSplatPly(file).cloud.size(), kGaussians) << file;
 }
 
+TEST_F(Work, FramesWhoseNumbersAreTheSameKeepTheirNames) {
+  const Project takes = solvedStandIn(folder_ / "shots", {.frames = 3, .name_end = "_v2"});
+  EXPECT_THAT(exportFrames({takes, "all", false, out()}, progress_).files,
+              ElementsAre(out() / "frame.000000_v2.ply", out() / "frame.000001_v2.ply",
+                          out() / "frame.000002_v2.ply"));
+}
+
 TEST_F(Work, AFrameOfAScoutIsNamedAsInterpolated) {
   const Project scouted = solvedStandIn(folder_ / "scout", {.frames = 3}, {.every = 2});
   EXPECT_THAT(exportFrames({scouted, "all", false, out()}, progress_).interpolated, ElementsAre("000001"));

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/output_target.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/io/capture_reader.h"
+#include "core/io/written_by.h"
+#include "core/pipeline/project.h"
+
+namespace beam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Links and ".." followed as far as the path is there.
+fs::path resolved(const fs::path& place) {
+  std::error_code failed;
+  const fs::path absolute = fs::absolute(place, failed);
+  const fs::path real = fs::weakly_canonical(failed ? place : absolute, failed);
+  return failed ? place.lexically_normal() : real;
+}
+
+[[noreturn]] void liesIn(const fs::path& place, const fs::path& owner, const char* what) {
+  throw Error(Error::Kind::Usage,
+              fmt::format("\"{}\" lies in the {} \"{}\", which is never written into; choose a place outside",
+                          place.string(), what, owner.string()));
+}
+
+void requireFolder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (!fs::is_directory(folder, failed)) {
+    throw Error(Error::Kind::Storage,
+                fmt::format("\"{}\" cannot be made: expected a folder or a free name", folder.string()));
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw Error(Error::Kind::Storage,
+                fmt::format("cannot write into \"{}\": {}", folder.string(), std::strerror(errno)));
+  }
+}
+
+void requireOwn(const fs::path& file, const OutputRule& rule) {
+  std::error_code failed;
+  const fs::file_status there = fs::status(file, failed);
+  if (!fs::exists(there)) return;
+  if (!fs::is_regular_file(there)) {
+    throw Error(Error::Kind::Usage, fmt::format("\"{}\" is a folder or a device; expected the name of a file",
+                                                file.string()));
+  }
+  if (rule.force || fs::file_size(file, failed) == 0 || isWrittenBy(file, rule.command)) return;
+  throw Error(Error::Kind::Usage,
+              fmt::format("\"{}\" is there and was not written by beam {}; choose another name, or replace it "
+                          "with --force",
+                          file.string(), rule.command));
+}
+
+}  // namespace
+
+void requireOutside(const fs::path& place) {
+  fs::path at = resolved(place);
+  for (;; at = at.parent_path()) {
+    if (Project::isProject(at)) liesIn(place, at, "project");
+    if (isCapture(at)) liesIn(place, at, "capture");
+    if (at == at.parent_path()) return;
+  }
+}
+
+void requireFileTarget(const fs::path& file, const OutputRule& rule) {
+  requireOutside(file);
+  requireOwn(file, rule);
+  requireFolder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+}
+
+void requireFolderTarget(const fs::path& folder, std::span<const fs::path> files, const OutputRule& rule) {
+  requireOutside(folder);
+  requireFolder(folder);
+  for (const fs::path& file : files) requireOwn(folder / file, rule);
+}
+
+}  // namespace beam
