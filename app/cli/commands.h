@@ -18,10 +18,15 @@ namespace beam {
 struct CommandContext {
   const Services& services;
   Console& console;
-  std::stop_token stop;  // requested on SIGINT and SIGTERM; give it to Progress
-  std::function<int()>
-      action;  // of the command that was typed; returns the exit code, may throw Error, Cancelled
+  std::stop_token stop;  // requested on SIGINT, SIGTERM and SIGHUP; give it to Progress
+  // Of the command that was typed; returns the exit code, may throw Error, Cancelled.
+  std::function<int()> action = {};
+  // What is true after a Cancelled of this command.
+  std::string interrupted = "interrupted; what was written is whole, the rest is missing";
 };
+
+// --force, of commands that write files.
+void addForceFlag(CLI::App& command, bool& force);
 
 // --threads N, --simd auto|avx512|avx2|scalar, --device cpu: for every command that computes.
 void addDeviceFlags(CLI::App& command, DeviceChoice& choice);

@@ -5,11 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
+#include "app/cli/terminal.h"
 #include "core/base/duration_text.h"
+#include "core/base/error.h"
 #include "core/base/log.h"
 
 namespace beam {
@@ -17,7 +21,7 @@ namespace {
 
 constexpr auto kBarEvery = std::chrono::milliseconds(100);
 constexpr auto kLineEvery = std::chrono::seconds(5);
-constexpr int kBarWidth = 24;
+constexpr std::size_t kBarWidth = 24, kLeastBarWidth = 8;
 
 // File names of the user may hold escape sequences; a terminal must not obey them.
 std::string harmless(std::string text) {
@@ -37,21 +41,25 @@ std::string leftText(double seconds) {
   return seconds < 0 ? std::string() : fmt::format(", {} left", durationText(seconds));
 }
 
-std::string barText(double fraction) {
-  const int full = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * kBarWidth);
-  return fmt::format("[{}{}]", std::string(full, '#'), std::string(kBarWidth - full, '.'));
+std::string barText(double fraction, std::size_t width) {
+  const auto full = static_cast<std::size_t>(std::clamp(fraction, 0.0, 1.0) * static_cast<double>(width));
+  return fmt::format("[{}{}]", std::string(full, '#'), std::string(width - full, '.'));
 }
+
+// Nothing can be told of a standard error that takes nothing; what the work comes to stays what matters.
+void put(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stderr); }
 
 }  // namespace
 
 Console::Console() {
-  terminal_ = ::isatty(STDERR_FILENO) != 0;
+  terminal_ = isDrawable(STDERR_FILENO);
   const char* no_color = std::getenv("NO_COLOR");
   if (!terminal_) last_shown_ = Clock::now();  // short work needs no lines
   color_ = terminal_ && (!no_color || !*no_color);
   sink_ = addLogSink([this](const LogRecord& record) {
     if (record.level == LogLevel::Warning) warning(record.text);
     if (record.level == LogLevel::Error) error(record.text);
+    if (record.level == LogLevel::Info) detail(record.text);
   });
 }
 
@@ -61,43 +69,66 @@ Console::~Console() {
 }
 
 void Console::setQuiet(bool quiet) { quiet_ = quiet; }
+void Console::setVerbose(bool verbose) { verbose_ = verbose; }
 
 void Console::clearBar() {
   if (!bar_shown_) return;
-  std::fputs("\r\033[K", stderr);
+  put("\r\033[K");
   bar_shown_ = false;
 }
 
-void Console::line(const std::string& text) {
+void Console::line(const char* mark, const char* color, const std::string& text) {
   clearBar();
-  fmt::print(stderr, "{}\n", harmless(text));
+  std::string whole = fmt::format("{}{}", mark, harmless(text));
+  if (terminal_) whole = foldedToColumns(whole, static_cast<std::size_t>(columnsOf(STDERR_FILENO)));
+  if (color_ && *color) {
+    const std::size_t length = std::char_traits<char>::length(mark) - 1;  // without the blank after it
+    whole = fmt::format("\033[{}m{}\033[0m{}", color, whole.substr(0, length), whole.substr(length));
+  }
+  put(whole + "\n");
 }
 
 void Console::print(const std::string& text) {
   std::lock_guard lock(mutex_);
   clearBar();
-  fmt::print("{}\n", harmless(text));
-  std::fflush(stdout);
+  const std::string whole = harmless(text) + "\n";
+  if (std::fwrite(whole.data(), 1, whole.size(), stdout) == whole.size() && std::fflush(stdout) == 0) return;
+  throw Error(Error::Kind::Storage, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
 
 void Console::info(const std::string& text) {
   std::lock_guard lock(mutex_);
-  if (!quiet_) line(text);
+  if (!quiet_) line("", "", text);
+}
+
+void Console::detail(const std::string& text) {
+  if (verbose_) info(text);
 }
 
 void Console::warning(const std::string& text) {
   std::lock_guard lock(mutex_);
-  if (warned_[text]++ > 0) return;
-  clearBar();
-  std::fputs(color_ ? "\033[33mwarning:\033[0m " : "warning: ", stderr);
-  line(text);
+  if (warned_[text]++ == 0) line("warning: ", "33", text);
 }
 
 void Console::error(const std::string& text) {
   std::lock_guard lock(mutex_);
-  clearBar();
-  std::fputs(color_ ? "\033[31merror:\033[0m " : "error: ", stderr);
-  line(text);
+  line("error: ", "31", text);
+}
+
+// What fits: the bar first becomes shorter and goes, then the rate, then the end of the label.
+std::string Console::barOf(const ConsoleProgress& p) const {
+  const auto width = static_cast<std::size_t>(columnsOf(STDERR_FILENO)) - 1;  // the last column may wrap
+  const std::string percent = fmt::format("{:3.0f} % ", p.fraction * 100), label = harmless(p.label);
+  const std::string left = leftText(p.seconds_left), tail = rateText(p.rate) + left;
+  const std::size_t full = columnsOf(percent + label + tail);
+  if (full + kLeastBarWidth + 3 <= width) {
+    const std::size_t bar = std::min(kBarWidth, width - full - 3);
+    return fmt::format("{} {}{}{}", barText(p.fraction, bar), percent, label, tail);
+  }
+  const std::string& end = full <= width ? tail : left;
+  const std::size_t taken = columnsOf(percent + end), least = std::min<std::size_t>(12, columnsOf(label));
+  if (taken + least > width) return cutToColumns(percent + label, width);
+  return percent + cutToColumns(label, width - taken) + end;
 }
 
 void Console::progress(const ConsoleProgress& p) {
@@ -106,10 +137,12 @@ void Console::progress(const ConsoleProgress& p) {
   if (quiet_) return;
   if (now - last_shown_ < (terminal_ ? Clock::duration(kBarEvery) : kLineEvery)) return;
   last_shown_ = now;
-  const std::string text =
-      fmt::format("{:3.0f} % {}{}{}", p.fraction * 100, p.label, rateText(p.rate), leftText(p.seconds_left));
-  if (!terminal_) return line(text);
-  fmt::print(stderr, "\r{} {}\033[K", barText(p.fraction), harmless(text));
+  if (!terminal_) {
+    return line("", "",
+                fmt::format("{:3.0f} % {}{}{}", p.fraction * 100, p.label, rateText(p.rate),
+                            leftText(p.seconds_left)));
+  }
+  put(fmt::format("\r{}\033[K", barOf(p)));
   std::fflush(stderr);
   bar_shown_ = true;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The terminal: results on standard output; `warning:` and `error:` lines and progress on standard error.
+// What the program says: results on standard output, `warning:` and `error:` lines and progress on standard
+// error. On a terminal no line of standard error is longer than the terminal is wide at that moment.
 #pragma once
 
 #include <chrono>
@@ -27,10 +28,14 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  void setQuiet(bool quiet);  // no progress and no info lines; warnings and errors stay
+  // --quiet: no progress and no info lines; warnings and errors stay. --verbose: details as well.
+  void setQuiet(bool quiet);
+  void setVerbose(bool verbose);
 
-  void print(const std::string& line);    // standard output: what was asked for, also when quiet
+  // Standard output: what was asked for, also when quiet. Throws Error{Storage} when it does not take it.
+  void print(const std::string& text);
   void info(const std::string& line);     // standard error: what is going on
+  void detail(const std::string& line);   // info that is told with --verbose alone
   void warning(const std::string& text);  // "warning: ..."; a text is shown once
   void error(const std::string& text);    // "error: ..."
 
@@ -43,10 +48,12 @@ class Console {
  private:
   using Clock = std::chrono::steady_clock;
   void clearBar();
-  void line(const std::string& text);
+  // `mark` is coloured and counts into the width.
+  void line(const char* mark, const char* color, const std::string& text);
+  std::string barOf(const ConsoleProgress& progress) const;
 
   std::mutex mutex_;
-  bool quiet_ = false;
+  bool quiet_ = false, verbose_ = false;
   bool terminal_ = false, color_ = false;
   bool bar_shown_ = false;
   Clock::time_point last_shown_{};

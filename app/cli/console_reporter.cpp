@@ -37,8 +37,15 @@ void ConsoleReporter::show(const StepProgress& e) {
 }
 
 void ConsoleReporter::show(const StepFinished& e) {
-  console_.info(e.reused ? fmt::format("{}: reused", nameOf(e.ref))
-                         : fmt::format("{}: done in {:.1f} s", nameOf(e.ref), e.seconds));
+  if (!e.reused) return console_.info(fmt::format("{}: done in {:.1f} s", nameOf(e.ref), e.seconds));
+  console_.detail(fmt::format("{}: reused", nameOf(e.ref)));
+  ++reused_[std::string(e.ref.step.text().substr(0, e.ref.step.text().find('.')))];
+}
+
+void ConsoleReporter::tellReused() {
+  for (const auto& [stage, results] : reused_)
+    console_.info(fmt::format("{}: {} result{} reused", stage, results, results == 1 ? "" : "s"));
+  reused_.clear();
 }
 
 void ConsoleReporter::show(const StepFailed& e) {
@@ -52,6 +59,7 @@ void ConsoleReporter::show(const JobWaiting& e) {
 
 void ConsoleReporter::show(const JobFinished& e) {
   console_.endProgress();
+  tellReused();
   for (const std::string& note : e.notes) console_.print(note);
   switch (e.outcome) {
     case JobOutcome::Done:

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events of a run -> terminal: one line a finished step, a bar for the step at work, a summary at the end.
+// Events of a run -> terminal: one line a computed step, a bar for the step at work, at the end one line a
+// stage for what was there already, and a summary.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "app/cli/console.h"
@@ -23,7 +25,10 @@ class ConsoleReporter {
   void show(const JobWaiting& event);
   void show(const JobFinished& event);
 
+  void tellReused();
+
   Console& console_;
+  std::map<std::string, int> reused_;  // results by stage
 };
 
 // Exit code of a run: 0 done, 10 some frames failed, 75 interrupted and resumable, else of the failure.

@@ -16,6 +16,9 @@ sigset_t handledSignals() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  struct sigaction hangup {};
+  ::sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);  // nohup wants the work to go on
   return set;
 }
 
@@ -28,9 +31,11 @@ Interrupt::Interrupt() {
   thread_ = std::jthread([this, set](const std::stop_token& ended) {
     const timespec patience{0, 50'000'000};
     while (!ended.stop_requested()) {
-      if (sigtimedwait(&set, nullptr, &patience) < 0) continue;
-      // The second time the user does not want to wait; what is published is safe.
-      if (!source_.request_stop()) ::_exit(kInterrupted);
+      const int number = sigtimedwait(&set, nullptr, &patience);
+      if (number < 0) continue;
+      // The second time the user does not want to wait; what is published is safe. A terminal that goes may
+      // tell more than once.
+      if (!source_.request_stop() && number != SIGHUP) ::_exit(kInterrupted);
     }
   });
 }

@@ -41,27 +41,27 @@ void printVersion(Console& console, bool verbose) {
   console.print(fmt::format("threads: {}", threadCount()));
 }
 
-int parseAndRun(int argc, char** argv, Console& console, std::stop_token stop) {
-  const Services services = makeServices();
-  CommandContext context{services, console, std::move(stop), {}};
+int parseAndRun(int argc, char** argv, CommandContext& context) {
+  Console& console = context.console;
   CLI::App app("BEAM Studio: multi-view video in, relightable Gaussians out", "beam");
   app.require_subcommand(0, 1);
   app.fallthrough();
   bool quiet = false, version = false, verbose = false;
   app.add_flag("--quiet", quiet, "No progress; warnings and errors stay");
-  app.add_flag("--version", version, "Print the version and exit");
-  app.add_flag("--verbose", verbose, "With --version: compiler, device and threads too");
+  app.add_flag("--verbose", verbose, "Details too: reused steps, what was chosen; of --version what it computes with");
+  app.add_flag("-V,--version", version, "Print the version and exit");
   addCommands(app, context);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help
+    if (e.get_exit_code() == 0) return console.print(app.help()), 0;
     throw Error(Error::Kind::Usage,
                 fmt::format("{}; see beam {}--help", e.what(),
                             app.get_subcommands().empty() ? std::string()
                                                           : app.get_subcommands().front()->get_name() + " "));
   }
   console.setQuiet(quiet);
+  console.setVerbose(verbose);
   if (version) return printVersion(console, verbose), 0;
   if (!context.action) {
     console.print(app.help());
@@ -72,11 +72,15 @@ int parseAndRun(int argc, char** argv, Console& console, std::stop_token stop) {
 
 int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
   try {
-    return parseAndRun(argc, argv, console, std::move(stop));
-  } catch (const Cancelled&) {
-    console.endProgress();
-    console.info("interrupted; the same command goes on where this one stopped");
-    return kInterrupted;
+    const Services services = makeServices();
+    CommandContext context{services, console, std::move(stop)};
+    try {
+      return parseAndRun(argc, argv, context);
+    } catch (const Cancelled&) {
+      console.endProgress();
+      console.info(context.interrupted);
+      return kInterrupted;
+    }
   } catch (const Error& e) {
     console.error(e.what());
     return exitCode(e.kind());
