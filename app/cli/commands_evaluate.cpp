@@ -4,54 +4,73 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <memory>
+#include <string_view>
+#include <utility>
 
+#include "app/cli/answer.h"
 #include "app/cli/commands.h"
-#include "core/io/file.h"
 #include "core/work/evaluate.h"
 
 namespace beam {
 namespace {
 
 struct EvaluateFlags {
-  std::string project, truth, pictures, json, frames = "all";
+  std::string project, truth, pictures, frames = "all";
+  AnswerFlags answer;
   DeviceChoice device;
 };
 
-std::size_t widthOf(std::string_view column) { return std::max<std::size_t>(15, column.size() + 2); }
+constexpr const char* kCommand = "evaluate";
 
+struct Column {
+  const char* key;
+  int decimals;
+};
+constexpr Column kColumns[] = {{"psnr", 3},
+                               {"ssim", 4},
+                               {"psnr_mask", 3},
+                               {"angle_deg", 3},
+                               {"mae_mm", 3},
+                               {"chamfer_mm", 3},
+                               {"pred_to_gt_mm", 3},
+                               {"gt_to_pred_mm", 3},
+                               {"median_mm", 3},
+                               {"p95_mm", 3},
+                               {"radiance", 5},
+                               {"base_color", 5},
+                               {"gaussian_radiance", 5},
+                               {"gaussian_base_color", 5},
+                               {"pictures", 0}};
+
+std::vector<Column> columnsOf(const Scores& scores) {
+  std::vector<Column> columns;
+  std::copy_if(std::begin(kColumns), std::end(kColumns), std::back_inserter(columns),
+               [&](const Column& c) { return scores.contains(c.key); });
+  return columns;
+}
+
+std::string cell(const std::string& text, const Column& column) {
+  return fmt::format("  {:>{}}", text, std::max<std::size_t>(8, std::string_view(column.key).size()));
+}
+
+// Maps that have the same scores stand below the same heads: no column is empty, and no line long.
 std::string scoreText(const ScoreTable& table) {
-  static const std::vector<std::pair<const char*, const char*>> kColumns = {{"psnr", "{:.3f}"},
-                                                                            {"ssim", "{:.4f}"},
-                                                                            {"psnr_mask", "{:.3f}"},
-                                                                            {"angle_deg", "{:.3f}"},
-                                                                            {"mae_mm", "{:.3f}"},
-                                                                            {"chamfer_mm", "{:.3f}"},
-                                                                            {"pred_to_gt_mm", "{:.3f}"},
-                                                                            {"gt_to_pred_mm", "{:.3f}"},
-                                                                            {"median_mm", "{:.3f}"},
-                                                                            {"p95_mm", "{:.3f}"},
-                                                                            {"radiance", "{:.5f}"},
-                                                                            {"base_color", "{:.5f}"},
-                                                                            {"gaussian_radiance", "{:.5f}"},
-                                                                            {"gaussian_base_color", "{:.5f}"},
-                                                                            {"pictures", "{:.0f}"}};
-  std::vector<std::pair<const char*, const char*>> columns;
-  for (const auto& c : kColumns) {
-    if (std::any_of(table.begin(), table.end(),
-                    [&](const auto& row) { return row.second.contains(c.first); }))
-      columns.push_back(c);
-  }
-  std::string text = fmt::format("{:<28}", "map");
-  for (const auto& c : columns) text += fmt::format("{:>{}}", c.first, widthOf(c.first));
+  std::size_t widest = 0;
+  for (const auto& [name, scores] : table) widest = std::max(widest, name.size());
+  std::string text;
+  std::vector<std::string> heads;
   for (const auto& [name, scores] : table) {
-    text += fmt::format("\n{:<28}", name);
-    for (const auto& [key, format] : columns) {
-      const auto found = scores.find(key);
-      text += fmt::format("{:>{}}",
-                          found == scores.end() ? "-" : fmt::format(fmt::runtime(format), found->second),
-                          widthOf(key));
+    const std::vector<Column> columns = columnsOf(scores);
+    std::vector<std::string> own;
+    for (const Column& c : columns) own.emplace_back(c.key);
+    if (std::exchange(heads, own) != own) {
+      text += fmt::format("{}{:<{}}", text.empty() ? "" : "\n\n", "", widest);
+      for (const Column& c : columns) text += cell(c.key, c);
     }
+    text += fmt::format("\n{:<{}}", name, widest);
+    for (const Column& c : columns) text += cell(fmt::format("{:.{}f}", scores.at(c.key), c.decimals), c);
   }
   return text;
 }
@@ -59,13 +78,14 @@ std::string scoreText(const ScoreTable& table) {
 int runEvaluate(const EvaluateFlags& flags, CommandContext& context) {
   const EvaluateRequest request{Project::open(flags.project, context.services.pipeline), flags.frames,
                                 flags.truth, flags.pictures};
+  requireAnswerTarget(flags.answer, kCommand);
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
   const EvaluateOutcome outcome = evaluate(request, *device, progress);
   context.console.endProgress();
-  context.console.print(scoreText(outcome.table));
-  if (!flags.json.empty()) writeFileAtomically(flags.json, scoreJson(outcome.table, outcome.each) + "\n");
   keepEvaluation(request.project, outcome);
+  answer(flags.answer, kCommand, context.console, scoreText(outcome.table),
+         [&] { return scoreJson(outcome.table, outcome.each); });
   return 0;
 }
 
@@ -80,8 +100,7 @@ void addEvaluateCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--pictures", flags->pictures,
                       "Score the pictures that render wrote here instead of new ones");
   command->add_option("--frames", flags->frames, "Frames: 0-7, 1,5, 1-9x2 or all that are solved");
-  command->add_option("--json", flags->json,
-                      "Also write the scores to this file, with every frame's and camera's own");
+  addAnswerFlags(*command, flags->answer);
   addDeviceFlags(*command, flags->device);
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runEvaluate(*flags, context); }; });

@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/answer.h"
 #include "app/cli/commands.h"
 #include "app/cli/run_flags.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/io/capture_check.h"
+#include "core/pipeline/output_target.h"
 #include "core/pipeline/project_document.h"
 #include "core/sample/make_sample.h"
 
@@ -20,7 +22,8 @@ namespace {
 
 struct CheckFlags {
   std::string path, up, unit;
-  bool json = false;
+  AnswerFlags answer;
+  bool strict = false;
   std::vector<std::string> hold_out;
 };
 
@@ -29,10 +32,11 @@ int runCheck(const CheckFlags& flags, Console& console) {
   options.hold_out = flags.hold_out;
   if (!flags.up.empty()) options.up = parseUpAxis(flags.up);
   if (!flags.unit.empty()) options.unit_m = parseUnit(flags.unit);
+  requireAnswerTarget(flags.answer, "check");
   const CheckReport report = checkPath(flags.path, options);
   for (const std::string& w : report.warnings) console.warning(w);
-  console.print(flags.json ? toJson(report) : toText(report));
-  return 0;
+  answer(flags.answer, "check", console, toText(report), [&] { return toJson(report); });
+  return flags.strict && !report.warnings.empty() ? exitCode(Error::Kind::Data) : 0;
 }
 
 struct SampleFlags {
@@ -66,7 +70,8 @@ void addCheckCommand(CLI::App& app, CommandContext& context) {
       "check", "Say what is understood of a capture, a panorama or a splat file, and what is wrong");
   command->add_option("PATH", flags->path, "Capture folder, panorama (.exr, .hdr) or splats (.ply)")
       ->required();
-  command->add_flag("--json", flags->json, "Print JSON");
+  addAnswerFlags(*command, flags->answer);
+  command->add_flag("--strict", flags->strict, "End with 65 when there is a warning");
   command->add_option("--up", flags->up, "Up axis of the capture: +Y, +Z or -Y");
   command->add_option("--unit", flags->unit, kUnitHelp)->type_name("m|cm|mm|NUMBER");
   command->add_option("--hold-out", flags->hold_out, "Cameras kept for testing: names or every Nth")
@@ -94,6 +99,9 @@ void addSampleCommand(CLI::App& app, CommandContext& context) {
   command->callback([flags, &context] {
     context.action = [flags, &context] {
       applySize(flags->size, flags->options);
+      requireOutside(flags->folder);
+      context.interrupted = fmt::format(
+          "interrupted; \"{}\" is not whole: remove it before the sample is made again", flags->folder);
       for (const std::string& d : flags->defects) flags->options.defects.push_back(parseDefect(d));
       setThreadCount(flags->device.threads);
       Progress progress(context.stop, context.console.listener());

@@ -18,6 +18,7 @@ namespace {
 struct RenderFlags {
   std::string project, cameras = "test", frames = "all", environment, frame_of = "capture", out;
   std::vector<std::string> channels = {"rgb"};
+  bool force = false;
   DeviceChoice device;
 };
 
@@ -39,7 +40,8 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
                               .frames = flags.frames,
                               .environments = {},
                               .world_frame = wantsWorld(flags.frame_of),
-                              .out = flags.out};
+                              .out = flags.out,
+                              .force = flags.force};
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
@@ -54,11 +56,12 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
 
 struct ExportFlags {
   std::string project, format = "ply", out, frames = "all", frame_of = "capture";
+  bool force = false;
 };
 
 int runExport(const ExportFlags& flags, CommandContext& context) {
   const ExportRequest request{Project::open(flags.project, context.services.pipeline), flags.frames,
-                              wantsWorld(flags.frame_of), flags.out, flags.format};
+                              wantsWorld(flags.frame_of), flags.out,        flags.format, flags.force};
   Progress progress(context.stop, context.console.listener());
   const ExportOutcome outcome = exportFrames(request, progress);
   context.console.endProgress();
@@ -89,6 +92,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--environment", flags->environment, "Panorama for the channel relight");
   command->add_option("--frame-of", flags->frame_of, "Axes of normals and meshes: capture or world");
   command->add_option("--out", flags->out, "Folder for the pictures")->required();
+  addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runRender(*flags, context); }; });
@@ -103,6 +107,7 @@ void addExportCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--frames", flags->frames,
                       "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");
   command->add_option("--frame-of", flags->frame_of, "Axes: capture or world");
+  addForceFlag(*command, flags->force);
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runExport(*flags, context); }; });
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/cli/answer.h"
 #include "app/cli/commands.h"
 #include "app/cli/run_flags.h"
 #include "core/base/error.h"
@@ -58,16 +59,17 @@ void tellOtherPlacement(const std::optional<CapturePlacement>& before, const Pro
                               toText(now), toText(*before)));
 }
 
-std::string statusOf(const Project& project, bool json) {
-  const std::vector<LeftOutCamera> left_out = leftOutCameras(project);
-  if (!json) {
-    std::string text = statusText(project);
-    for (const LeftOutCamera& c : left_out) text += fmt::format("\nleft out of the fit: {}", toText(c, {}));
-    return text;
-  }
+std::string statusWords(const Project& project) {
+  std::string text = statusText(project);
+  for (const LeftOutCamera& c : leftOutCameras(project))
+    text += fmt::format("\nleft out of the fit: {}", toText(c, {}));
+  return text;
+}
+
+std::string statusAsJson(const Project& project) {
   nlohmann::ordered_json j = nlohmann::ordered_json::parse(statusJson(project));
   j["left_out"] = nlohmann::ordered_json::array();
-  for (const LeftOutCamera& c : left_out)
+  for (const LeftOutCamera& c : leftOutCameras(project))
     j["left_out"].push_back(
         {{"camera", c.camera}, {"kind", toText(c.kind)}, {"frames", c.frames}, {"text", c.text}});
   return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -143,13 +145,14 @@ void addRunCommand(CLI::App& app, CommandContext& context) {
 void addStatusCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("status", "What of a project is done");
   auto folder = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
+  auto flags = std::make_shared<AnswerFlags>();
   command->add_option("PROJECT", *folder, "Project folder")->required();
-  command->add_flag("--json", *json, "As JSON");
-  command->callback([folder, json, &context] {
-    context.action = [folder, json, &context] {
+  addAnswerFlags(*command, *flags);
+  command->callback([folder, flags, &context] {
+    context.action = [folder, flags, &context] {
       const Project project = Project::open(*folder, context.services.pipeline);
-      context.console.print(statusOf(project, *json));
+      requireAnswerTarget(*flags, "status");
+      answer(*flags, "status", context.console, statusWords(project), [&] { return statusAsJson(project); });
       return 0;
     };
   });
@@ -157,12 +160,13 @@ void addStatusCommand(CLI::App& app, CommandContext& context) {
 
 void addStagesCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("stages", "The stages, their steps and every setting");
-  auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "As JSON");
-  command->callback([json, &context] {
-    context.action = [json, &context] {
+  auto flags = std::make_shared<AnswerFlags>();
+  addAnswerFlags(*command, *flags);
+  command->callback([flags, &context] {
+    context.action = [flags, &context] {
       const StageRegistry& stages = context.services.pipeline->stages;
-      context.console.print(*json ? stagesJson(stages) : stagesText(stages));
+      requireAnswerTarget(*flags, "stages");
+      answer(*flags, "stages", context.console, stagesText(stages), [&] { return stagesJson(stages); });
       return 0;
     };
   });

@@ -185,7 +185,7 @@ TEST_F(ExitCode, AFullDiskIsAStorageErrorAndCostsNothingThatWasFinished) {
   for (const auto& entry : fs::directory_iterator(at("p.beam") / "results")) {
     EXPECT_NE(entry.path().filename().string().front(), '.');
   }
-  const Said rest = beam(words);
+  const Said rest = beam(words + Words{"--verbose"});
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.err, HasSubstr("capture.import: reused"));
 }

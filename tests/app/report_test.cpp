@@ -21,10 +21,10 @@ class Report : public ::testing::Test {
   fs::path at(const char* name) const { return folder_.path() / name; }
   Said beam(const Words& words) const { return Running(folder_.path(), words).wait(); }
   // Both frames as far as Surface, one camera held out; settings that take a moment.
-  Said process(const fs::path& capture) const {
+  Said process(const fs::path& capture, const Words& more = {}) const {
     return beam(Words{"process", capture.string(), "--out", at("p.beam").string(), "--hold-out", "cam02",
                       "--until", "surface"} +
-                tinyTake());
+                tinyTake() + more);
   }
 };
 
@@ -96,7 +96,7 @@ TEST_F(Report, AHeldOutPhotographChangesTheScoreAndNothingElse) {
   ASSERT_EQ(process(at("capture")).code, 0);
   const fs::path held_out = at("capture") / "images/cam02";
   fs::copy_file(held_out / "000001.png", held_out / "000000.png", fs::copy_options::overwrite_existing);
-  const Said said = process(at("capture"));
+  const Said said = process(at("capture"), {"--verbose"});
   ASSERT_EQ(said.code, 0) << said.err;
   EXPECT_THAT(said.err, HasSubstr("frame 000000 surface.refine: reused"));
   EXPECT_THAT(said.err, HasSubstr("frame 000000 surface.score: done"));
@@ -108,7 +108,7 @@ TEST_F(Report, EvaluateScoresAHeldOutCameraThatDropsTheFirstFrame) {
   fs::copy(SampleHouse::capture(), at("capture"), fs::copy_options::recursive);
   fs::remove(at("capture") / "images/cam02/000000.png");
   ASSERT_EQ(process(at("capture")).code, 0);
-  const Said said = beam({"evaluate", at("p.beam").string(), "--json", at("scores.json").string()});
+  const Said said = beam({"evaluate", at("p.beam").string(), "--json-file", at("scores.json").string()});
   ASSERT_EQ(said.code, 0) << said.err;
   const std::string json = textOf(at("scores.json"));
   EXPECT_THAT(json, HasSubstr("\"pictures\": 1.0"));

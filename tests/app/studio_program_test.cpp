@@ -185,7 +185,7 @@ TEST_F(StudioProgram, ATerminationDuringARunEndsItAndCostsNothingThatWasFinished
   ASSERT_TRUE(run.ended());
   EXPECT_THAT(run.wait().code, AnyOf(Eq(0), Eq(75), Eq(-SIGTERM)));
   const Said rest = Running(folder_.path(), {"run", at("p.beam").string(), "--until", "surface", "--frames",
-                                             "0", "--set", "surface.iterations=20"})
+                                             "0", "--set", "surface.iterations=20", "--verbose"})
                         .wait();
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.err, AllOf(HasSubstr("capture.import: reused"), HasSubstr("surface.mesh: done")));

@@ -81,7 +81,7 @@ TEST(Unit, TheSampleInMillimetresGivesTheSameResultsAndGoesOutInMillimetres) {
     EXPECT_EQ(made.err.find("taken as millimetres (--unit says otherwise)") != std::string::npos,
               name == "mm")
         << made.err;
-    const auto out = [&, &n = name](const char* what) { return (dir / n / what).string(); };
+    const auto out = [&, &n = name](const char* what) { return (dir / ("of_" + n) / what).string(); };
     for (const Words& command :
          {Words{"export", project, "--format", "ply", "--out", out("ply")},
           Words{"render", project, "--channels", "depth,mesh", "--cameras", "cam00", "--out", out("shapes")},
@@ -92,15 +92,16 @@ TEST(Unit, TheSampleInMillimetresGivesTheSameResultsAndGoesOutInMillimetres) {
     }
   }
   const auto cloud = [&](const char* name) {
-    return boundsOf(readSplatPly(dir / name / "ply" / "frame.000001.ply").cloud.position_m);
+    return boundsOf(
+        readSplatPly(dir / (std::string("of_") + name) / "ply" / "frame.000001.ply").cloud.position_m);
   };
   expectTimes1000(cloud("mm"), cloud("m"));
   const auto mesh = [&](const char* name) {
-    return boundsOf(readMeshPly(dir / name / "shapes/mesh/000001.ply").vertices);
+    return boundsOf(readMeshPly(dir / (std::string("of_") + name) / "shapes/mesh/000001.ply").vertices);
   };
   expectTimes1000(mesh("mm"), mesh("m"));
-  const float metres = medianDepth(dir / "m/shapes/depth/cam00/000001.exr");
-  EXPECT_NEAR(medianDepth(dir / "mm/shapes/depth/cam00/000001.exr") / (1000 * metres), 1, 0.01);
+  const float metres = medianDepth(dir / "of_m/shapes/depth/cam00/000001.exr");
+  EXPECT_NEAR(medianDepth(dir / "of_mm/shapes/depth/cam00/000001.exr") / (1000 * metres), 1, 0.01);
   for (const char* map : {"rgb", "ao", "base_color"})
     EXPECT_NEAR(scoreOf(dir / "mm.beam", map), scoreOf(dir / "m.beam", map), 0.2) << map;
   for (const auto& [map, score] : {std::pair{"mesh", "chamfer_mm"}, std::pair{"depth", "mae_mm"}}) {

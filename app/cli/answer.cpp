@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/answer.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/io/file.h"
+#include "core/io/written_by.h"
+#include "core/pipeline/output_target.h"
+
+namespace beam {
+namespace {
+
+bool toFile(const AnswerFlags& flags) { return !flags.json_file.empty() && flags.json_file != "-"; }
+
+std::string signedBy(const std::string& command, const std::string& json) {
+  using Json = nlohmann::ordered_json;
+  const Json content = Json::parse(json);
+  if (!content.is_object()) return json;
+  Json whole = {{"written_by", {{"program", writerOf(command)}}}};
+  whole.update(content);
+  return whole.dump(1);
+}
+
+}  // namespace
+
+void addAnswerFlags(CLI::App& command, AnswerFlags& flags) {
+  command.add_flag("--json", flags.json, "Print JSON instead of words");
+  command.add_option("--json-file", flags.json_file, "Also write JSON to this file; -: as --json")
+      ->type_name("FILE");
+  command.add_flag("--force", flags.force, "Replace a file that another program wrote");
+}
+
+void requireAnswerTarget(const AnswerFlags& flags, const std::string& command) {
+  if (toFile(flags)) requireFileTarget(flags.json_file, {command, flags.force});
+}
+
+void answer(const AnswerFlags& flags, const std::string& command, Console& console, const std::string& words,
+            const std::function<std::string()>& json) {
+  const bool print_json = flags.json || flags.json_file == "-";
+  if (toFile(flags)) writeFileAtomically(flags.json_file, signedBy(command, json()) + "\n");
+  console.print(print_json ? signedBy(command, json()) : words);
+}
+
+}  // namespace beam

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where `beam` writes: never into a capture or a project, and over nobody's file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/io/image_file.h"
+#include "tests/app/cli_support.h"
+
+namespace beam::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+void put(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+class Target : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    house_ = std::make_unique<TempDir>();
+    const Said said = Running(house_->path(), Words{"process", SampleHouse::capture().string(), "--out",
+                                                    (house_->path() / "p.beam").string()} +
+                                                  tiny())
+                          .wait();
+    ASSERT_EQ(said.code, 0) << said.err;
+  }
+  static void TearDownTestSuite() { house_.reset(); }
+
+  Said beam(const Words& words) const { return Running(folder_.path(), words).wait(); }
+  std::string project() const { return (house_->path() / "p.beam").string(); }
+  std::string at(const char* name) const { return (folder_.path() / name).string(); }
+
+  // Every command that writes, with `place` as where.
+  std::vector<Words> writers(const std::string& file, const std::string& folder) const {
+    const std::string capture = SampleHouse::capture().string();
+    return {{"evaluate", project(), "--ground-truth", capture, "--json-file", file},
+            {"status", project(), "--json-file", file},
+            {"stages", "--json-file", file},
+            {"check", capture, "--json-file", file},
+            {"report", project(), "--out", file},
+            {"render", project(), "--channels", "depth", "--out", folder},
+            {"export", project(), "--out", folder},
+            {"sample", folder, "--cameras", "2", "--size", "16x16", "--samples", "1"},
+            {"new", folder, "--capture", capture},
+            Words{"process", capture, "--out", folder} + tiny()};
+  }
+  void expectRefused(const std::string& file, const std::string& folder, const fs::path& untouched,
+                     const char* hint) const {
+    const auto before = filesIn(untouched);
+    for (const Words& words : writers(file, folder)) {
+      const Said said = beam(words);
+      EXPECT_EQ(said.code, 2) << words[0] << "\n" << said.err;
+      EXPECT_THAT(said.err, HasSubstr(hint)) << words[0];
+    }
+    EXPECT_EQ(filesIn(untouched), before);
+  }
+
+  TempDir folder_;
+  static std::unique_ptr<TempDir> house_;  // with a solved project, p.beam
+};
+std::unique_ptr<TempDir> Target::house_;
+
+TEST_F(Target, InACaptureIsRefusedByEveryCommand) {
+  const fs::path capture = SampleHouse::capture();
+  expectRefused((capture / "dataset.json").string(), (capture / "out").string(), capture, "capture");
+  expectRefused((capture / "images/new/x.json").string(), (capture / "images/deep/out").string(), capture,
+                "capture");
+}
+
+TEST_F(Target, InAProjectIsRefusedByEveryCommand) {
+  const fs::path p = project();
+  expectRefused((p / "project.json").string(), (p / "results/mine").string(), p, "project");
+}
+
+TEST_F(Target, ThroughALinkIsWhereTheLinkLeads) {
+  fs::create_directory_symlink(SampleHouse::capture(), at("link"));
+  expectRefused(at("link/dataset.json"), at("link/out"), SampleHouse::capture(), "capture");
+}
+
+TEST_F(Target, ThatAnotherWroteIsReplacedWithForceAlone) {
+  const std::string capture = SampleHouse::capture().string();
+  for (const Words& words :
+       {Words{"evaluate", project(), "--ground-truth", capture, "--json-file", at("mine")},
+        Words{"status", project(), "--json-file", at("mine")},
+        Words{"check", capture, "--json-file", at("mine")},
+        Words{"report", project(), "--out", at("mine")}}) {
+    put(at("mine"), "my own words");
+    const Said said = beam(words);
+    EXPECT_EQ(said.code, 2) << words[0];
+    EXPECT_THAT(said.err, AllOf(HasSubstr("mine"), HasSubstr("--force"))) << words[0];
+    EXPECT_EQ(textOf(at("mine")), "my own words") << words[0];
+    EXPECT_EQ(beam(words + Words{"--force"}).code, 0) << words[0];
+    EXPECT_EQ(beam(words).code, 0) << words[0] << ": its own file";
+  }
+  const Words render = {"render", project(), "--channels", "rgb,depth,mesh", "--out", at("pictures")};
+  const Words splats = {"export", project(), "--out", at("splats")};
+  for (const Words& words : {render, splats}) {
+    EXPECT_EQ(beam(words).code, 0);
+    EXPECT_EQ(beam(words).code, 0) << "its own files";
+  }
+  for (const char* file :
+       {"pictures/rgb/test00/000000.png", "pictures/mesh/000000.ply", "splats/frame.000000.ply"}) {
+    put(at(file), "my own words");
+    EXPECT_EQ(beam(fs::path(file).begin()->string() == "splats" ? splats : render).code, 2) << file;
+    EXPECT_EQ(textOf(at(file)), "my own words");
+    fs::remove(at(file));
+  }
+}
+
+TEST_F(Target, IsLookedAtBeforeTheWorkAndItsFoldersAreMade) {
+  const std::string capture = SampleHouse::capture().string();
+  ASSERT_EQ(beam({"new", at("empty.beam"), "--capture", capture}).code, 0);
+  put(at("mine"), "x");
+  EXPECT_EQ(beam({"report", at("empty.beam"), "--out", at("mine")}).code, 2) << "not: nothing is solved";
+  put(at("file"), "x");
+  EXPECT_EQ(beam({"report", project(), "--out", at("file/below.html")}).code, 74);
+  EXPECT_EQ(beam({"report", project(), "--out", at("new/deep/page.html")}).code, 0);
+  EXPECT_EQ(beam({"status", project(), "--json-file", at("other/s.json")}).code, 0);
+  EXPECT_EQ(beam({"report", project(), "--out", at("new")}).code, 2) << "a folder";
+}
+
+TEST_F(Target, JsonGoesToStandardOutputOrIntoAFileAndSaysWhoWroteIt) {
+  const std::string capture = SampleHouse::capture().string();
+  for (const Words& words : {Words{"evaluate", project(), "--ground-truth", capture},
+                             Words{"status", project()}, Words{"check", capture}, Words{"stages"}}) {
+    const Said words_said = beam(words), json = beam(words + Words{"--json"});
+    EXPECT_EQ(json.code, 0) << json.err;
+    const nlohmann::json parsed = nlohmann::json::parse(json.out);
+    EXPECT_EQ(beam(words + Words{"--json-file", "-"}).out, json.out) << words[0];
+    const Said both = beam(words + Words{"--json-file", at(words[0].c_str())});
+    EXPECT_EQ(both.out, words_said.out) << words[0];
+    EXPECT_EQ(nlohmann::json::parse(textOf(at(words[0].c_str()))), parsed) << words[0];
+    if (parsed.is_object()) {
+      EXPECT_EQ(parsed.at("written_by").at("program"), "BEAM Studio, beam " + words[0]);
+    }
+  }
+}
+
+TEST_F(Target, PicturesSayWhatTheyAre) {
+  ASSERT_EQ(beam({"render", project(), "--channels", "rgb,depth", "--out", at("pictures")}).code, 0);
+  const std::string png = textOf(at("pictures/rgb/test00/000000.png"));
+  for (const char* text : {"sRGB", "tEXtSoftware", "BEAM Studio, beam render", "test00", "000000"})
+    EXPECT_THAT(png, HasSubstr(text));
+  EXPECT_EQ(readPhoto(at("pictures/rgb/test00/000000.png")).width, 48) << "another program still reads it";
+  const std::string exr = textOf(at("pictures/depth/test00/000000.exr"));
+  for (const char* text :
+       {"Software", "BEAM Studio, beam render", "camera", "test00", "unit", "axes", "capture"})
+    EXPECT_THAT(exr, HasSubstr(text));
+}
+
+TEST_F(Target, CheckIsStrictOnRequest) {
+  const std::string capture = SampleHouse::capture().string();
+  EXPECT_EQ(beam({"check", capture, "--strict"}).code, 0);
+  EXPECT_EQ(beam({"check", capture, "--unit", "mm"}).code, 0);
+  EXPECT_EQ(beam({"check", capture, "--unit", "mm", "--strict"}).code, 65);
+}
+
+}  // namespace
+}  // namespace beam::testing
