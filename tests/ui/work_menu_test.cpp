@@ -107,11 +107,12 @@ TEST_F(WorkMenu, ReportIsWrittenBesideTheProjectAndSaysWhere) {
 TEST_F(WorkMenu, AReportThatCannotBeWrittenIsSaid) {
   testing::copySolvedStandIn(folder.path());
   ASSERT_TRUE(open(folder / "capture.beam"));
-  pressReport(QString::fromStdString((folder / "gone" / "page.html").string()));
+  pressReport(QString::fromStdString((folder / "capture.beam" / "page.html").string()));
   ASSERT_TRUE(settle());
   EXPECT_EQ(window.runBar().text().toStdString(), "The report was not made");
   EXPECT_EQ(window.message().title().toStdString(), "The report was not made");
   EXPECT_TRUE(window.message().text().contains("page.html")) << window.message().text().toStdString();
+  EXPECT_TRUE(window.message().text().contains("never written into"));
 }
 
 TEST_F(WorkMenu, NeitherCanBeDoneWithoutWhatItIsMadeOf) {
