@@ -60,8 +60,12 @@ struct ExportFlags {
 };
 
 int runExport(const ExportFlags& flags, CommandContext& context) {
-  const ExportRequest request{Project::open(flags.project, context.services.pipeline), flags.frames,
-                              wantsWorld(flags.frame_of), flags.out,        flags.format, flags.force};
+  const ExportRequest request{Project::open(flags.project, context.services.pipeline),
+                              flags.frames,
+                              wantsWorld(flags.frame_of),
+                              flags.out,
+                              flags.format,
+                              flags.force};
   Progress progress(context.stop, context.console.listener());
   const ExportOutcome outcome = exportFrames(request, progress);
   context.console.endProgress();

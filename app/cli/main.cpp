@@ -48,7 +48,8 @@ int parseAndRun(int argc, char** argv, CommandContext& context) {
   app.fallthrough();
   bool quiet = false, version = false, verbose = false;
   app.add_flag("--quiet", quiet, "No progress; warnings and errors stay");
-  app.add_flag("--verbose", verbose, "Details too: reused steps, what was chosen; of --version what it computes with");
+  app.add_flag("--verbose", verbose,
+               "Details too: reused steps, what was chosen; of --version what it computes with");
   app.add_flag("-V,--version", version, "Print the version and exit");
   addCommands(app, context);
   try {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/terminal.h"
 
+#include <sys/ioctl.h>
+#include <unistd.h>
 #include <clocale>
 #include <cstdlib>
 #include <cstring>
 #include <cwchar>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 

@@ -71,9 +71,8 @@ void checkFormat(const Json& format, const char* name) {
 }  // namespace
 
 void refuseJson(const std::string& place, const std::string& expected, const Json& found) {
-  throw Error(Error::Kind::Data,
-              fmt::format("{}{}expected {}, found {}", place, place.empty() ? "" : ": ", expected,
-                          shortJson(found.dump(-1, ' ', true))));
+  throw Error(Error::Kind::Data, fmt::format("{}{}expected {}, found {}", place, place.empty() ? "" : ": ",
+                                             expected, shortJson(found.dump(-1, ' ', true))));
 }
 
 JsonObject::JsonObject(Json value, std::string place) : value_(std::move(value)), place_(std::move(place)) {

@@ -68,9 +68,8 @@ double finiteNumber(const nlohmann::json& object, const char* key, const std::st
   }
   const nlohmann::json& v = object.at(key);
   if (!v.is_number() || !std::isfinite(v.get<double>())) {
-    throw Error(Error::Kind::Data,
-                fmt::format("{}: expected \"{}\" to be a finite number, found {}", where, key,
-                            shortJson(v.dump())));
+    throw Error(Error::Kind::Data, fmt::format("{}: expected \"{}\" to be a finite number, found {}", where,
+                                               key, shortJson(v.dump())));
   }
   return v.get<double>();
 }

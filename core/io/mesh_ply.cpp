@@ -83,7 +83,8 @@ void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh, const Fil
       "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty float x\nproperty float "
       "y\nproperty float z\n{}{}"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      plyComments(notes), mesh.vertices.size(), normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+      plyComments(notes), mesh.vertices.size(),
+      normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
       uv ? "property float s\nproperty float t\n" : "", mesh.triangles.size());
   const std::size_t row = 12 + (normals ? 12 : 0) + (uv ? 8 : 0);
   out.reserve(out.size() + mesh.vertices.size() * row + mesh.triangles.size() * 13);

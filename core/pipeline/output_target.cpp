@@ -49,14 +49,15 @@ void requireOwn(const fs::path& file, const OutputRule& rule) {
   const fs::file_status there = fs::status(file, failed);
   if (!fs::exists(there)) return;
   if (!fs::is_regular_file(there)) {
-    throw Error(Error::Kind::Usage, fmt::format("\"{}\" is a folder or a device; expected the name of a file",
-                                                file.string()));
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" is a folder or a device; expected the name of a file", file.string()));
   }
   if (rule.force || fs::file_size(file, failed) == 0 || isWrittenBy(file, rule.command)) return;
-  throw Error(Error::Kind::Usage,
-              fmt::format("\"{}\" is there and was not written by beam {}; choose another name, or replace it "
-                          "with --force",
-                          file.string(), rule.command));
+  throw Error(
+      Error::Kind::Usage,
+      fmt::format("\"{}\" is there and was not written by beam {}; choose another name, or replace it "
+                  "with --force",
+                  file.string(), rule.command));
 }
 
 }  // namespace

@@ -132,10 +132,11 @@ void keepInHistory(const fs::path& project, const std::string& text) {
 // Nothing is written that would be refused when it is read.
 void requireReadable(const fs::path& project, const std::string& text) {
   if (text.size() <= kMostTextBytes) return;
-  throw Error(Error::Kind::Usage,
-              fmt::format("\"{}\" cannot be saved: its project.json would have {} bytes, the limit is {}; keep "
-                          "looks with many keys in files of their own",
-                          project.string(), text.size(), kMostTextBytes));
+  throw Error(
+      Error::Kind::Usage,
+      fmt::format("\"{}\" cannot be saved: its project.json would have {} bytes, the limit is {}; keep "
+                  "looks with many keys in files of their own",
+                  project.string(), text.size(), kMostTextBytes));
 }
 
 ProjectDocument documentOf(Json j) {

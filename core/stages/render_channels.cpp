@@ -101,7 +101,8 @@ class ChannelWriter {
       logWarning("{}", lost);
     if (!relit_) return;
     for (const fs::path& file : request.environments) {
-      lights_.push_back({relitFolder(file), std::make_shared<const Environment>(makeEnvironment(readRadiance(file)))});
+      lights_.push_back(
+          {relitFolder(file), std::make_shared<const Environment>(makeEnvironment(readRadiance(file)))});
     }
   }
 

@@ -28,8 +28,9 @@ struct RenderFramesOutcome {
   std::vector<std::string> interpolated;  // names of those frames that are interpolated, not solved
 };
 
-// Throws Error{Usage} for words that choose nothing and a place that requireFolderTarget refuses, Error{Data} when a frame is not solved as far as a
-// channel needs, Error{Storage}, Cancelled: whole files are left then, of the pictures that were done.
+// Throws Error{Usage} for words that choose nothing and a place that requireFolderTarget refuses, Error{Data}
+// when a frame is not solved as far as a channel needs, Error{Storage}, Cancelled: whole files are left then,
+// of the pictures that were done.
 RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRenderer& renderer,
                                  Progress& progress);
 

@@ -25,7 +25,8 @@ struct ReportOutcome {
   std::vector<std::string> findings;
 };
 
-// Throws Error{Usage} for a place that requireFileTarget refuses, Error{Data} when no frame has a result, Error{Storage}, Cancelled: then nothing is written.
+// Throws Error{Usage} for a place that requireFileTarget refuses, Error{Data} when no frame has a result,
+// Error{Storage}, Cancelled: then nothing is written.
 ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progress& progress);
 
 }  // namespace beam

@@ -58,7 +58,8 @@ class PageWriter {
   std::string write() {
     out_ = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><meta name=\"viewport\" "
-        "content=\"width=device-width, initial-scale=1\"/><meta name=\"generator\" content=\"{2}\"/><title>{0}: quality report</title>\n"
+        "content=\"width=device-width, initial-scale=1\"/><meta name=\"generator\" "
+        "content=\"{2}\"/><title>{0}: quality report</title>\n"
         "<style>{1}</style></head>\n<body><main>\n<header><p class=\"kind\">Quality report</p><h1>{0}</h1>",
         escapedHtml(page_.project), kReportStyle, writerOf(kReportCommand));
     for (const auto& [label, words] : page_.facts) {

@@ -47,6 +47,11 @@ class OnTerminal {
     }
   }
   void resize(unsigned short columns) {
+    // What was written before must not be taken for what comes after.
+    readUntil([&] {
+      int waiting = 0;
+      return ::ioctl(terminal_, FIONREAD, &waiting) != 0 || waiting == 0;
+    });
     const winsize size = sizeOf(columns);
     ::ioctl(terminal_, TIOCSWINSZ, &size);
     screen_.resize(columns);

@@ -75,8 +75,9 @@ TEST_F(Process, StopsAfterSurfaceWithoutAPanoramaAndSaysWhatItNeeds) {
   EXPECT_THAT(said.err, HasSubstr("surface.mesh: done"));
   EXPECT_THAT(said.err, Not(HasSubstr("materials")));
   // Given one, the same command does the rest and only the rest.
-  const Said rest = beam(process(at("capture"), "p.beam") +
-                         Words{"--environment", (SampleHouse::capture() / "environment.exr").string(), "--verbose"});
+  const Said rest =
+      beam(process(at("capture"), "p.beam") +
+           Words{"--environment", (SampleHouse::capture() / "environment.exr").string(), "--verbose"});
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.err, HasSubstr("surface.mesh: reused"));
   EXPECT_THAT(rest.err, HasSubstr("materials.fit: done"));

@@ -14,8 +14,11 @@ class Screen {
  public:
   explicit Screen(std::size_t columns) : columns_(columns) {}
 
-  // Takes effect with the line that is written next: what is under way was written for the old width.
-  void resize(std::size_t columns) { next_columns_ = columns; }
+  // Takes effect with the line after the next: one may have been made for the old width already.
+  void resize(std::size_t columns) {
+    next_columns_ = columns;
+    old_lines_ = 1;
+  }
 
   void take(const std::string& bytes) {
     for (const char c : bytes) take(c);
@@ -33,12 +36,10 @@ class Screen {
   void take(char c) {
     if (!escape_.empty() || c == '\033') return escaped(c);
     if (c == '\r') {
-      at_ = 0;
-      if (next_columns_ > 0) columns_ = next_columns_, next_columns_ = 0;
+      beginLine();
     } else if (c == '\n') {
       lines_.emplace_back();
-      at_ = 0;
-      if (next_columns_ > 0) columns_ = next_columns_, next_columns_ = 0;
+      beginLine();
     } else if ((static_cast<unsigned char>(c) & 0xC0) != 0x80) {  // no further byte of a letter
       if (at_ == columns_) {
         ++wraps_;
@@ -50,6 +51,12 @@ class Screen {
       line[at_++] = c;
     }
   }
+  void beginLine() {
+    at_ = 0;
+    if (next_columns_ == 0 || old_lines_-- > 0) return;
+    columns_ = next_columns_;
+    next_columns_ = 0;
+  }
   // "ESC [ ... letter"
   void escaped(char c) {
     escape_ += c;
@@ -59,6 +66,7 @@ class Screen {
   }
 
   std::size_t columns_, next_columns_ = 0, at_ = 0, wraps_ = 0;
+  int old_lines_ = 0;
   std::vector<std::string> lines_ = {""};
   std::string escape_;
 };

@@ -22,13 +22,16 @@ TEST(CaptureUnit, SeedPointsFarFromTheOriginKeepTheirDetail) {
   const TempDir folder;
   std::string rows;
   for (int i = 0; i < 10; ++i) rows += fmt::format("500000.{0} 5000000.{0} 1.{0}\n", i);
-  put(folder / "far.ply", "ply\nformat ascii 1.0\nelement vertex 10\nproperty double x\nproperty double y\n"
-                          "property double z\nend_header\n" + rows);
+  put(folder / "far.ply",
+      "ply\nformat ascii 1.0\nelement vertex 10\nproperty double x\nproperty double y\n"
+      "property double z\nend_header\n" +
+          rows);
   const PointCloud points = readPointsPly(folder / "far.ply");
   ASSERT_EQ(points.position_m.size(), 10u);
   for (int i = 0; i < 10; ++i)
-    EXPECT_LT(glm::distance(points.position(static_cast<std::size_t>(i)),
-                            dvec3(500000, 5000000, 1) + 0.1 * i), 1e-6);
+    EXPECT_LT(
+        glm::distance(points.position(static_cast<std::size_t>(i)), dvec3(500000, 5000000, 1) + 0.1 * i),
+        1e-6);
 }
 
 TEST(CaptureUnit, HowFarACameraMayMoveGoesByTheDistanceToTheSubjectInEveryUnit) {

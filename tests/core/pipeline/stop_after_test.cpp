@@ -139,7 +139,7 @@ TEST(WaitingRun, SaysOnceForWhatAndWhom) {
   const JobWaiting waiting = next<JobWaiting>(runner);
   EXPECT_EQ(waiting.ref.step, "surface.fit"_step);
   EXPECT_EQ(waiting.ref.frame_name, "000");
-  EXPECT_EQ(waiting.holder, "process " + std::to_string(::getpid()));
+  EXPECT_EQ(waiting.holder, "process " + std::to_string(::getpid()) + " on this machine");
   std::this_thread::sleep_for(350ms);  // more than two looks
   lease.reset();
   int told = 0;

@@ -194,8 +194,8 @@ TEST(PointCloud, OfACaptureFarFromItsOriginKeepsItsDetail) {
   for (std::uint64_t i = 0; i < 100; ++i) positions.push_back(dvec3(5e5, 5e6, 100) + dvec3(randomVec(i)));
   const PointCloud capture = pointCloudOf(positions, {});
   const Similarity3 world_from_capture{someTurn(), 1, -(someTurn() * dvec3(5e5, 5e6, 100))};
-  const PointCloud world = transformed(transformed(capture, {someTurn()}),
-                                       world_from_capture * inverse(Similarity3{someTurn()}));
+  const PointCloud world =
+      transformed(transformed(capture, {someTurn()}), world_from_capture * inverse(Similarity3{someTurn()}));
   EXPECT_EQ(world.origin, dvec3(0));
   for (std::size_t i = 0; i < positions.size(); ++i) {
     EXPECT_LT(glm::distance(capture.position(i), positions[i]), 1e-6);
