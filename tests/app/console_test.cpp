@@ -47,7 +47,9 @@ class OnTerminal {
     }
   }
   void resize(unsigned short columns) {
-    // What was written before must not be taken for what comes after.
+    // The program rests meanwhile: what it wrote before must not be taken for what comes after.
+    ::kill(child_, SIGSTOP);
+    ::waitpid(child_, nullptr, WUNTRACED);
     readUntil([&] {
       int waiting = 0;
       return ::ioctl(terminal_, FIONREAD, &waiting) != 0 || waiting == 0;
@@ -55,6 +57,7 @@ class OnTerminal {
     const winsize size = sizeOf(columns);
     ::ioctl(terminal_, TIOCSWINSZ, &size);
     screen_.resize(columns);
+    ::kill(child_, SIGCONT);
   }
   int wait() {
     readUntil([] { return false; });

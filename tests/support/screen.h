@@ -14,9 +14,10 @@ class Screen {
  public:
   explicit Screen(std::size_t columns) : columns_(columns) {}
 
-  // Takes effect with the line after the next: one may have been made for the old width already.
+  // Narrower it takes effect with the line after the next: one may have been made for the old width already.
   void resize(std::size_t columns) {
-    next_columns_ = columns;
+    next_columns_ = columns < columns_ ? columns : 0;
+    if (next_columns_ == 0) columns_ = columns;
     old_lines_ = 1;
   }
 
