@@ -44,8 +44,8 @@ std::string jsonComplaint(const std::exception& e) {
   return text;
 }
 
-bool shallowJson(int depth) {
-  if (depth <= kDeepestJson) return true;
+void requireShallowJson(int depth) {
+  if (depth <= kDeepestJson) return;
   throw Error(Error::Kind::Data, fmt::format("expected at most {} levels, found more", kDeepestJson));
 }
 

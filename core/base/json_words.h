@@ -4,7 +4,6 @@
 
 #include <exception>
 #include <string>
-#include <string_view>
 
 namespace beam {
 
@@ -15,8 +14,13 @@ std::string jsonComplaint(const std::exception& e);
 // Objects and lists in each other; ours need six, and deep ones would exhaust the stack of whoever copies or
 // prints them.
 inline constexpr int kDeepestJson = 64;
-// What Json::parse() calls: throws Error{Data} for a text that goes deeper.
-bool shallowJson(int depth);
+void requireShallowJson(int depth);  // throws Error{Data}
+// For Json::parse(), which calls it as it goes deeper.
+template <class Json>
+bool shallowJson(int depth, typename Json::parse_event_t, Json&) {
+  requireShallowJson(depth);
+  return true;
+}
 
 // A value as messages show it: not all of a long one.
 std::string shortJson(std::string text);

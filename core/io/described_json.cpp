@@ -146,9 +146,8 @@ std::string documentText(const char* format_name, const OrderedJson& members) {
 }
 
 Json parseDocument(std::string_view text, const char* format_name, std::string_view where) {
-  const auto shallow = [](int depth, Json::parse_event_t, Json&) { return shallowJson(depth); };
   try {
-    Json document = Json::parse(text, shallow);
+    Json document = Json::parse(text, shallowJson<Json>);
     if (!document.is_object()) refuseJson("", "an object", document);
     checkFormat(document["format"], format_name);
     document.erase("format");

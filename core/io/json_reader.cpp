@@ -50,10 +50,7 @@ std::string quoteNonNumbers(const std::string& text) {
 nlohmann::json readJson(const std::filesystem::path& path) {
   const std::string text = readTextFile(path);
   try {
-    const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-      return shallowJson(depth);
-    };
-    return nlohmann::json::parse(quoteNonNumbers(text), shallow);
+    return nlohmann::json::parse(quoteNonNumbers(text), shallowJson<nlohmann::json>);
   } catch (const Error& e) {
     throw Error(e.kind(), fmt::format("\"{}\": {}", path.string(), e.what()));
   } catch (const nlohmann::json::exception& e) {

@@ -88,9 +88,7 @@ void readWorld(Json j, ProjectDocument& document) {
 fs::path nextHistoryFile(const fs::path& history) {
   std::vector<fs::path> kept;
   for (const auto& entry : fs::directory_iterator(history)) {
-    const std::string number = entry.path().stem().string();
-    const bool ours = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
-    if (ours && entry.path().extension() == ".json") kept.push_back(entry.path());
+    if (isHistoryFile(entry.path())) kept.push_back(entry.path());
   }
   std::sort(kept.begin(), kept.end());
   const int last = kept.empty() ? 0 : std::atoi(kept.back().stem().c_str());
@@ -165,6 +163,12 @@ ProjectDocument documentOf(Json j) {
 ProjectDocument withoutLooks(ProjectDocument document) {
   document.looks.clear();
   return document;
+}
+
+bool isHistoryFile(const fs::path& file) {
+  const std::string number = file.stem().string();
+  return file.extension() == ".json" && !number.empty() &&
+         number.find_first_not_of("0123456789") == std::string::npos;
 }
 
 std::string newProjectId() {
@@ -271,7 +275,7 @@ ProjectDocument parseProjectDocument(std::string_view json, std::string_view whe
   if (json.find_first_not_of(" \t\r\n") == std::string_view::npos) throw broken("it is empty");
   int major = 0;
   try {
-    Json j = Json::parse(json, [](int depth, Json::parse_event_t, Json&) { return shallowJson(depth); });
+    Json j = Json::parse(json, shallowJson<Json>);
     major = j.at("format").at("major").get<int>();
     if (major <= kMajor) return documentOf(std::move(j));
   } catch (const nlohmann::json::exception& e) {

@@ -68,6 +68,9 @@ ProjectDocument withoutLooks(ProjectDocument document);
 
 std::string newProjectId();
 
+// Whether a file of history/ is a version of ours, by its name: a number. The folder may hold others' files.
+bool isHistoryFile(const std::filesystem::path& file);
+
 // For the moment of a change of project.json. Throws Error{Locked} that names the holder when it stays taken.
 FileLock lockProject(const std::filesystem::path& project);
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/base/error.h"
 #include "core/io/file.h"
@@ -19,11 +18,6 @@ std::string summaryOf(const ProjectDocument& document) {
   const std::size_t n = document.settings.size();
   if (n == 0) return fmt::format("preset {}, no setting differs", document.preset);
   return fmt::format("preset {}, {} setting{}", document.preset, n, n == 1 ? " differs" : "s differ");
-}
-
-bool isNumber(const std::string& text) {
-  return !text.empty() &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 std::chrono::system_clock::time_point timeOf(const fs::path& file) {
@@ -49,7 +43,7 @@ std::vector<fs::path> historyFiles(const fs::path& project) {
   std::vector<fs::path> files;
   std::error_code failed;
   for (fs::directory_iterator i(project / "history", failed), end; !failed && i != end; i.increment(failed)) {
-    if (i->path().extension() == ".json" && isNumber(i->path().stem().string())) files.push_back(i->path());
+    if (isHistoryFile(i->path())) files.push_back(i->path());
   }
   std::sort(files.rbegin(), files.rend());  // numbers have eight digits
   return files;
