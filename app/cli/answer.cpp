@@ -28,7 +28,7 @@ void addAnswerFlags(CLI::App& command, AnswerFlags& flags) {
   command.add_flag("--json", flags.json, "Print JSON instead of words");
   command.add_option("--json-file", flags.json_file, "Also write JSON to this file; -: as --json")
       ->type_name("FILE");
-  command.add_flag("--force", flags.force, "Replace a file that another program wrote");
+  addForceFlag(command, flags.force);
 }
 
 void requireAnswerTarget(const AnswerFlags& flags, const std::string& command) {
@@ -38,8 +38,9 @@ void requireAnswerTarget(const AnswerFlags& flags, const std::string& command) {
 void answer(const AnswerFlags& flags, const std::string& command, Console& console, const std::string& words,
             const std::function<std::string()>& json) {
   const bool print_json = flags.json || flags.json_file == "-";
-  if (toFile(flags)) writeFileAtomically(flags.json_file, signedBy(command, json()) + "\n");
-  console.print(print_json ? signedBy(command, json()) : words);
+  const std::string whole = print_json || toFile(flags) ? signedBy(command, json()) : std::string();
+  if (toFile(flags)) writeFileAtomically(flags.json_file, whole + "\n");
+  console.print(print_json ? whole : words);
 }
 
 }  // namespace beam
