@@ -93,6 +93,11 @@ PointCloud transformed(const PointCloud& points, const Similarity3& a_from_b) {
   return pointCloudOf(positions, points.color);
 }
 
+std::string lengthUnit(const Similarity3& a_from_world) {
+  const double metres = 1 / a_from_world.scale;
+  return metres == 1 ? "m" : fmt::format("{} m", metres);
+}
+
 std::string roundingWarning(const Similarity3& capture_from_world) {
   constexpr double kLost_m = 1e-4;  // less than a photograph shows of a person
   const dvec3 far = glm::abs(capture_from_world.translation);

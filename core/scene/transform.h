@@ -21,6 +21,8 @@ Mesh transformed(const Mesh& mesh, const Similarity3& a_from_b);
 // Takes the same picture of what went with it: camera axes keep their directions, depth is in a's unit.
 Camera transformed(const Camera& camera, const Similarity3& a_from_b);
 PointCloud transformed(const PointCloud& points, const Similarity3& a_from_b);
+// A unit of length there: "m", "0.001 m".
+std::string lengthUnit(const Similarity3& a_from_world);
 // What single precision costs positions that are brought there, a sentence; empty where it is no loss.
 std::string roundingWarning(const Similarity3& capture_from_world);
 // Its capture_from_world goes back all the way.

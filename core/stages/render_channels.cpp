@@ -63,6 +63,12 @@ std::string relitFolder(const fs::path& environment) {
   return std::string(kRelightChannel) + "_" + environment.stem().string();
 }
 
+std::vector<std::string> relitFolders(const RenderRequest& request) {
+  std::vector<std::string> folders;
+  for (const fs::path& environment : request.environments) folders.push_back(relitFolder(environment));
+  return folders;
+}
+
 std::string colorStateOf(const ChannelInfo& channel) {
   if (channel.quantity != Quantity::Color) return "data";
   return channel.file == FileForm::Png ? "sRGB" : "scene-linear Rec.709";
@@ -155,10 +161,7 @@ class ChannelWriter {
     if (!camera.empty()) notes.emplace_back("camera", camera);
     if (channel.quantity != Quantity::Color || channel.id == kMeshChannel)
       notes.emplace_back("axes", request_.world_frame ? "world" : "capture");
-    if (!channel.unit.empty()) {
-      const double metres = 1 / frame_from_world_.scale;
-      notes.emplace_back("unit", metres == 1 ? channel.unit : fmt::format("{} {}", metres, channel.unit));
-    }
+    if (!channel.unit.empty()) notes.emplace_back("unit", lengthUnit(frame_from_world_));
     if (channel.id == kMeshChannel) return notes;
     notes.emplace_back("color_state", colorStateOf(channel));
     if (channel.times_alpha) notes.emplace_back("alpha", "value x alpha, composited on black");
@@ -235,20 +238,20 @@ void check(const RenderRequest& request, const RendererAbilities& abilities) {
 
 std::vector<fs::path> channelFiles(const GaussianSequence& sequence, const RenderRequest& request) {
   std::vector<fs::path> files;
+  const auto add = [&](const std::string& folder, const std::string& camera, const ChannelInfo& channel) {
+    for (const FrameIndex frame : request.frames)
+      files.push_back(channelFile(folder, camera, nameOf(sequence, frame), channel));
+  };
   for (const std::string& id : request.channels) {
     const ChannelInfo& channel = channelOf(id);
-    std::vector<std::string> folders = {id};
-    if (id == kRelightChannel) {
-      folders.clear();
-      for (const fs::path& e : request.environments) folders.push_back(relitFolder(e));
+    if (id == kMeshChannel) {
+      add(id, {}, channel);
+      continue;
     }
-    for (const FrameIndex frame : request.frames) {
-      const std::string& name = nameOf(sequence, frame);
-      if (id == kMeshChannel) files.push_back(channelFile(id, {}, name, channel));
-      for (const std::string& folder : folders) {
-        for (const View& view : request.views)
-          if (id != kMeshChannel) files.push_back(channelFile(folder, view.name, name, channel));
-      }
+    std::vector<std::string> folders = {id};
+    if (id == kRelightChannel) folders = relitFolders(request);
+    for (const std::string& folder : folders) {
+      for (const View& view : request.views) add(folder, view.name, channel);
     }
   }
   return files;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <set>
 
 #include "core/base/error.h"
@@ -70,11 +69,10 @@ std::vector<std::filesystem::path> filesOf(const std::vector<FrameLabel>& labels
 }
 
 FileNotes notesOf(const FrameLabel& label, bool world_frame, const Similarity3& capture_from_world) {
-  const double metres = world_frame ? 1 : 1 / capture_from_world.scale;
   return {{"Software", writerOf(kCommand)},
           {"frame", label.name},
           {"axes", world_frame ? "world" : "capture"},
-          {"unit", metres == 1 ? "m" : fmt::format("{} m", metres)}};
+          {"unit", lengthUnit(world_frame ? Similarity3{} : capture_from_world)}};
 }
 
 }  // namespace
