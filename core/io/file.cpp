@@ -17,6 +17,7 @@ namespace beam {
 namespace {
 
 constexpr std::size_t kPiece = 4u << 20;
+constexpr std::size_t kUnsynced = 32u << 20;  // a slow disk takes less than half a second for it
 
 [[noreturn]] void storageError(std::string_view doing, const std::filesystem::path& path) {
   throw Error(Error::Kind::Storage,
@@ -89,6 +90,28 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
   }
 }
 
+std::atomic<unsigned> temporary_files{0};
+
+// `write` is given the open file.
+template <class Write>
+void replaceFile(const std::filesystem::path& path, Write&& write) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const std::filesystem::path temporary =
+      folder / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), temporary_files++);
+  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644));
+  if (file.get() < 0) storageError("create a file beside", path);
+  try {
+    write(file.get());
+    if (::fsync(file.get()) != 0) storageError("sync", path);
+    if (file.close() != 0) storageError("close", path);
+    if (::rename(temporary.c_str(), path.c_str()) != 0) storageError("rename into", path);
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  syncPath(folder);
+}
+
 }  // namespace
 
 std::vector<std::byte> readFile(const std::filesystem::path& path, std::uint64_t max_bytes) {
@@ -107,26 +130,24 @@ void syncPath(const std::filesystem::path& path) {
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  static std::atomic<unsigned> counter{0};
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const std::filesystem::path temporary =
-      folder / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), counter++);
-  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644));
-  if (file.get() < 0) storageError("create a file beside", path);
-  try {
-    writeAll(file.get(), bytes, path);
-    if (::fsync(file.get()) != 0) storageError("sync", path);
-    if (file.close() != 0) storageError("close", path);
-    if (::rename(temporary.c_str(), path.c_str()) != 0) storageError("rename into", path);
-  } catch (...) {
-    ::unlink(temporary.c_str());
-    throw;
-  }
-  syncPath(folder);
+  replaceFile(path, [&](int fd) { writeAll(fd, bytes, path); });
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text) {
   writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void writeFileAtomically(const std::filesystem::path& path, const std::function<std::string_view()>& next) {
+  replaceFile(path, [&](int fd) {
+    std::size_t unsynced = 0;
+    for (std::string_view piece = next(); !piece.empty(); piece = next()) {
+      writeAll(fd, std::as_bytes(std::span(piece.data(), piece.size())), path);
+      unsynced += piece.size();
+      if (unsynced < kUnsynced) continue;
+      if (::fdatasync(fd) != 0) storageError("sync", path);
+      unsynced = 0;
+    }
+  });
 }
 
 Error storageError(const std::filesystem::filesystem_error& refused) {

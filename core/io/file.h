@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@ std::string readTextFile(const std::filesystem::path& path, std::uint64_t max_by
 // Error{Storage} with the reason (disk full, read-only folder) and leaves nothing behind.
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
+// Piece after piece, an empty one at the end. `next` may throw, which leaves nothing behind either; so that
+// it is soon asked again, what there is goes to the disk as it comes.
+void writeFileAtomically(const std::filesystem::path& path, const std::function<std::string_view()>& next);
 
 // Syncs a file or folder that was written otherwise; Error{Storage} on failure.
 void syncPath(const std::filesystem::path& path);

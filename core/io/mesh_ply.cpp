@@ -74,33 +74,59 @@ std::vector<vec2> uvOf(const PlyElement& vertex) {
   return {};
 }
 
+// The bytes of a mesh's file, a piece at a time.
+class MeshPieces {
+ public:
+  MeshPieces(const Mesh& mesh, const MeshPlyWriting& how)
+      : mesh_(mesh),
+        progress_(how.progress),
+        normals_(!mesh.vertices.empty() && mesh.normals.size() == mesh.vertices.size()),
+        uv_(!mesh.vertices.empty() && mesh.uv.size() == mesh.vertices.size()) {
+    piece_ = fmt::format(
+        "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty float x\nproperty float "
+        "y\nproperty float z\n{}{}element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        plyComments(how.notes), mesh.vertices.size(),
+        normals_ ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+        uv_ ? "property float s\nproperty float t\n" : "", mesh.triangles.size());
+  }
+
+  // Empty: there are no more.
+  std::string_view next() {
+    if (progress_) progress_->check();
+    if (begun_) piece_.clear();
+    begun_ = true;
+    for (; vertices_ < mesh_.vertices.size() && piece_.size() < kPiece; ++vertices_) {
+      append(piece_, mesh_.vertices[vertices_]);
+      if (normals_) append(piece_, mesh_.normals[vertices_]);
+      if (uv_) append(piece_, vec2(mesh_.uv[vertices_].x, 1 - mesh_.uv[vertices_].y));
+    }
+    for (; triangles_ < mesh_.triangles.size() && piece_.size() < kPiece; ++triangles_) {
+      append(piece_, std::uint8_t{3});
+      append(piece_, mesh_.triangles[triangles_]);
+    }
+    return piece_;
+  }
+
+ private:
+  static constexpr std::size_t kPiece = 4u << 20;
+  const Mesh& mesh_;
+  const Progress* progress_;
+  bool normals_, uv_, begun_ = false;
+  std::size_t vertices_ = 0, triangles_ = 0;
+  std::string piece_;
+};
+
 }  // namespace
 
-void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh, const FileNotes& notes) {
-  const bool normals = !mesh.vertices.empty() && mesh.normals.size() == mesh.vertices.size();
-  const bool uv = !mesh.vertices.empty() && mesh.uv.size() == mesh.vertices.size();
-  std::string out = fmt::format(
-      "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty float x\nproperty float "
-      "y\nproperty float z\n{}{}"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      plyComments(notes), mesh.vertices.size(),
-      normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
-      uv ? "property float s\nproperty float t\n" : "", mesh.triangles.size());
-  const std::size_t row = 12 + (normals ? 12 : 0) + (uv ? 8 : 0);
-  out.reserve(out.size() + mesh.vertices.size() * row + mesh.triangles.size() * 13);
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    append(out, mesh.vertices[i]);
-    if (normals) append(out, mesh.normals[i]);
-    if (uv) append(out, vec2(mesh.uv[i].x, 1 - mesh.uv[i].y));
-  }
-  for (const auto& t : mesh.triangles) {
-    append(out, std::uint8_t{3});
-    append(out, t);
-  }
-  writeFileAtomically(path, out);
+void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh, const MeshPlyWriting& how) {
+  requireRowsWithin(mesh.vertices.size(), how.most_rows, "vertex", path);
+  requireRowsWithin(mesh.triangles.size(), how.most_rows, "face", path);
+  MeshPieces pieces(mesh, how);
+  writeFileAtomically(path, [&] { return pieces.next(); });
 }
 
 void writePointsPly(const std::filesystem::path& path, const PointCloud& points) {
+  requireRowsWithin(points.position_m.size(), kMostPlyRows, "vertex", path);
   const bool colored = points.color.size() == points.position_m.size();
   std::string out = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
@@ -115,8 +141,8 @@ void writePointsPly(const std::filesystem::path& path, const PointCloud& points)
   writeFileAtomically(path, out);
 }
 
-Mesh readMeshPly(const std::filesystem::path& path) {
-  const std::vector<PlyElement> elements = readPly(path);
+Mesh readMeshPly(const std::filesystem::path& path, std::size_t most_rows) {
+  const std::vector<PlyElement> elements = readPly(path, most_rows);
   Mesh mesh;
   const PlyElement& vertex = vertexOf(elements, path);
   mesh.vertices = positionsOf(vertex, path);
@@ -154,6 +180,7 @@ PointCloud readPointsPly(const std::filesystem::path& path) {
 }
 
 void writePosePly(const std::filesystem::path& path, const Pose& pose) {
+  requireRowsWithin(pose.size(), kMostPlyRows, "vertex", path);
   std::string out = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
       "float z\nproperty float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float "

@@ -18,7 +18,6 @@ namespace beam {
 namespace {
 
 constexpr std::uint64_t kMaxFile = 8ull << 30;
-constexpr std::size_t kMaxCount = 1u << 26;
 constexpr std::size_t kMaxProperties = 1024, kMaxElements = 64;
 
 enum class Format { Ascii, Little, Big };
@@ -53,7 +52,8 @@ std::size_t sizeOfType(PlyType t) {
 
 class PlyReader {
  public:
-  explicit PlyReader(const std::filesystem::path& path) : path_(path), bytes_(readTextFile(path, kMaxFile)) {}
+  PlyReader(const std::filesystem::path& path, std::size_t most_rows)
+      : path_(path), most_rows_(most_rows), bytes_(readTextFile(path, kMaxFile)) {}
 
   std::vector<PlyElement> read() {
     header();
@@ -134,11 +134,12 @@ class PlyReader {
       least += format_ == Format::Ascii ? 2 : sizeOfType(p.count_type.value_or(p.type));
     }
     const std::size_t left = bytes_.size() - at_ + 1;
-    if (e.count > kMaxCount || (least > 0 && e.count > left / least)) {
+    if (e.count > left / std::max<std::size_t>(least, 1)) {
       bad(fmt::format(
           "the header announces {} rows of \"{}\", {} bytes are left; the file is truncated or damaged",
           e.count, e.name, left));
     }
+    requireRowsWithin(e.count, most_rows_, e.name, path_);
   }
 
   void body(PlyElement& e) {
@@ -236,6 +237,7 @@ class PlyReader {
   }
 
   std::filesystem::path path_;
+  std::size_t most_rows_;
   std::string bytes_;
   std::size_t at_ = 0;
   Format format_ = Format::Ascii;
@@ -254,7 +256,19 @@ std::optional<std::size_t> PlyElement::column(const std::string& property) const
   return std::nullopt;
 }
 
-std::vector<PlyElement> readPly(const std::filesystem::path& path) { return PlyReader(path).read(); }
+void requireRowsWithin(std::size_t rows, std::size_t most, const std::string& element,
+                       const std::filesystem::path& path) {
+  if (rows <= most) return;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("\"{}\": {} rows of \"{}\" pass the limit of {} that a PLY file is read and written "
+                  "with; make it with fewer",
+                  path.string(), rows, element, most));
+}
+
+std::vector<PlyElement> readPly(const std::filesystem::path& path, std::size_t most_rows) {
+  return PlyReader(path, most_rows).read();
+}
 
 std::string plyComments(const FileNotes& notes) {
   std::string lines;

@@ -38,8 +38,15 @@ struct PlyElement {
 // "comment NAME TEXT" lines for the header.
 std::string plyComments(const FileNotes& notes);
 
-// Throws Error{Data} naming the file: no PLY, unknown type, or fewer bytes than the counts need.
-std::vector<PlyElement> readPly(const std::filesystem::path& path);
+// Of one element. Readers refuse more and so do writers.
+inline constexpr std::size_t kMostPlyRows = 1u << 26;
+// Throws Error{Data} that names the limit where `rows` of `element` are more than `most`.
+void requireRowsWithin(std::size_t rows, std::size_t most, const std::string& element,
+                       const std::filesystem::path& path);
+
+// Throws Error{Data} naming the file: no PLY, unknown type, fewer bytes than the counts need, or more rows
+// than `most_rows`.
+std::vector<PlyElement> readPly(const std::filesystem::path& path, std::size_t most_rows = kMostPlyRows);
 const PlyElement* findElement(const std::vector<PlyElement>& elements, const std::string& name);
 
 }  // namespace beam

@@ -130,6 +130,7 @@ Materials materialsOf(const PlyElement& vertex, const Columns& columns) {
 
 void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud, const Materials* materials,
                    const FileNotes& notes) {
+  requireRowsWithin(cloud.size(), kMostPlyRows, "vertex", path);
   std::vector<std::string> columns = standardColumns();
   if (materials) {
     const std::vector<std::string> more = materialColumns();

@@ -114,7 +114,7 @@ class ChannelWriter {
 
   void frame(FrameIndex frame, Progress& progress) {
     const std::string& name = nameOf(sequence_, frame);
-    if (mesh_) mesh(frame, name);
+    if (mesh_) mesh(frame, name, progress);
     if (drawn_.empty() && lights_.empty())
       return progress.step(static_cast<std::int64_t>(request_.views.size()));
     const std::shared_ptr<const GaussianFrame> result = solvedFrame(sequence_, frame);
@@ -168,14 +168,14 @@ class ChannelWriter {
     return notes;
   }
 
-  void mesh(FrameIndex frame, const std::string& name) const {
+  void mesh(FrameIndex frame, const std::string& name, const Progress& progress) const {
     const std::shared_ptr<const Mesh> m = sequence_.mesh(frame);
     if (!m && sequence_.content(frame).interpolated)
       return logInfo("frame {} is interpolated: it has no mesh", name);
     if (!m) throw Error(Error::Kind::Data, fmt::format("frame {} has no mesh yet: run Surface first", name));
     const ChannelInfo& channel = channelOf(kMeshChannel);
     writeMeshPly(file(kMeshChannel, {}, name, channel), transformed(*m, frame_from_world_),
-                 notesOf(channel, kMeshChannel, {}, name));
+                 {.progress = &progress, .notes = notesOf(channel, kMeshChannel, {}, name)});
   }
 
   // One of each channel; `folders` name them.

@@ -18,6 +18,7 @@
 namespace beam {
 namespace {
 
+using ::testing::AllOf;
 using testing::dataErrorOf;
 using ::testing::HasSubstr;
 using testing::TempDir;
@@ -157,6 +158,52 @@ TEST(MeshPly, AsciiPolygonsAreFannedAndAbsurdCountsRefused) {
   EXPECT_THAT(dataErrorOf([&] { readMeshPly(dir / "b.ply"); }), HasSubstr("60000000"));
 }
 
+Mesh meshOfRows(std::uint32_t rows) {
+  Mesh m;
+  for (std::uint32_t i = 0; i < rows; ++i) {
+    m.vertices.push_back({static_cast<float>(i), 1, 2});
+    m.triangles.push_back({i, (i + 1) % rows, (i + 2) % rows});
+  }
+  return m;
+}
+
+TEST(MeshPly, ComesBackInWholeFromManyPieces) {
+  const TempDir dir;
+  const Mesh m = meshOfRows(1000003);
+  writeMeshPly(dir / "m.ply", m);
+  const Mesh back = readMeshPly(dir / "m.ply");
+  EXPECT_TRUE(back.vertices == m.vertices);
+  EXPECT_TRUE(back.triangles == m.triangles);
+}
+
+TEST(MeshPly, IsWrittenAndReadUpToTheSameLimitWhichIsCalledALimit) {
+  const TempDir dir;
+  const Mesh m = meshOfRows(5);
+  const auto called = [](const std::string& element) {
+    return AllOf(HasSubstr("limit of 4 "), HasSubstr("5 rows of \"" + element + "\""));
+  };
+  writeMeshPly(dir / "m.ply", m, {.most_rows = 5});
+  EXPECT_EQ(readMeshPly(dir / "m.ply", 5).triangles, m.triangles);
+  EXPECT_THAT(dataErrorOf([&] { readMeshPly(dir / "m.ply", 4); }), called("vertex"));
+  EXPECT_THAT(dataErrorOf([&] { writeMeshPly(dir / "n.ply", m, {.most_rows = 4}); }), called("vertex"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "n.ply"));
+  Mesh more_faces = meshOfRows(4);
+  more_faces.triangles.push_back({0, 1, 2});
+  writeMeshPly(dir / "f.ply", more_faces);
+  EXPECT_THAT(dataErrorOf([&] { readMeshPly(dir / "f.ply", 4); }), called("face"));
+  EXPECT_THAT(dataErrorOf([&] { writeMeshPly(dir / "n.ply", more_faces, {.most_rows = 4}); }),
+              called("face"));
+}
+
+TEST(MeshPly, StopsWhileItIsWrittenAndLeavesNothing) {
+  const TempDir dir;
+  std::stop_source stop;
+  stop.request_stop();
+  const Progress progress(stop.get_token());
+  EXPECT_THROW(writeMeshPly(dir / "m.ply", meshOfRows(5), {.progress = &progress}), Cancelled);
+  EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
+}
+
 struct Splats {
   GaussianCloud cloud;
   Materials materials;
@@ -222,6 +269,20 @@ TEST(Files, AnAtomicWriteReplacesAndLeavesNothingElse) {
   EXPECT_EQ(bytesOf(dir / "a"), "two");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
   EXPECT_THROW(writeFileAtomically(dir / "none/a", std::string_view("x")), Error);
+}
+
+TEST(Files, PiecesAreOneFileOrNone) {
+  const TempDir dir;
+  int asked = 0;
+  writeFileAtomically(dir / "a", [&]() -> std::string_view { return ++asked > 3 ? "" : "ab"; });
+  EXPECT_EQ(bytesOf(dir / "a"), "ababab");
+  const auto fails = [&]() -> std::string_view {
+    if (++asked > 5) throw Cancelled();
+    return "cd";
+  };
+  EXPECT_THROW(writeFileAtomically(dir / "a", fails), Cancelled);
+  EXPECT_EQ(bytesOf(dir / "a"), "ababab");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
 }
 
 }  // namespace
