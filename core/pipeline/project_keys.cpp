@@ -165,7 +165,8 @@ KeyIngredients Project::ingredients(const StepId& step, const Take& take, FrameI
                 fmt::format("{} is not for frame {} of its take", step.text(), frame.value));
   const std::optional<FrameIndex> before = info.per_frame ? take.before(frame) : std::nullopt;
   const bool later = before && !info.later.empty();
-  KeyIngredients key{step, info.version, parametersOf(step, later), {}, {}, {}, later};
+  const int version = info.version + (capture().masks == MaskKind::None ? info.unmasked_version : 0);
+  KeyIngredients key{step, version, parametersOf(step, later), {}, {}, {}, later};
   for (const Reads reads : info.reads) {
     switch (reads) {
       case Reads::Calibration:

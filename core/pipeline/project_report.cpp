@@ -242,6 +242,7 @@ std::string stagesJson(const StageRegistry& stages) {
                                 {"title", step.title},
                                 {"source", step.source},
                                 {"version", step.version},
+                                {"unmasked_version", step.unmasked_version},
                                 {"per_frame", step.per_frame},
                                 {"frames", toText(step.frames)},
                                 {"inputs", idsJson(step.inputs)},

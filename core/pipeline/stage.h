@@ -65,10 +65,11 @@ struct StepShown {
 };
 
 struct StepInfo {
-  std::string id;           // StepId::name(): "fit". Never renamed
-  std::string title;        // "Fit appearance"
-  std::string source = "";  // "BEAM 3.1, eq. 9"
-  int version = 1;          // raise when equal inputs would now give another result
+  std::string id;            // StepId::name(): "fit". Never renamed
+  std::string title;         // "Fit appearance"
+  std::string source = "";   // "BEAM 3.1, eq. 9"
+  int version = 1;           // raise when equal inputs would now give another result
+  int unmasked_version = 0;  // raise instead when that is so of captures without masks alone
   bool per_frame = true;
   std::vector<Reads> reads = {};
   // The steps whose results it reads; all stand earlier. One that is not for the frame is left out.

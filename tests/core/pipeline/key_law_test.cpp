@@ -89,6 +89,25 @@ TEST_F(KeyLaw, WhereMasksAreVoidsWhatReadsPictures) {
                                  "surface.seed"_step}));
 }
 
+// The step of that name of a house whose stages say so.
+Digest keyWith(MaskKind masks, int version, int unmasked_version) {
+  std::vector<StageInfo> stages = fakeStages();
+  stages[2].steps[2].version = version;
+  stages[2].steps[2].unmasked_version = unmasked_version;
+  FakeHouse house(stages);
+  house.masks = masks;
+  return house.newProject().key("surface.refine"_step, FrameIndex{0});
+}
+
+TEST(KeyVersion, OfCapturesWithoutMasksVoidsThemAlone) {
+  for (const MaskKind masks : {MaskKind::Files, MaskKind::Alpha, MaskKind::Key})
+    EXPECT_EQ(keyWith(masks, 1, 1), keyWith(masks, 1, 0));
+  EXPECT_NE(keyWith(MaskKind::None, 1, 1), keyWith(MaskKind::None, 1, 0));
+  // Whichever is raised, none of before is taken for it.
+  EXPECT_NE(keyWith(MaskKind::None, 2, 1), keyWith(MaskKind::None, 1, 1));
+  EXPECT_NE(keyWith(MaskKind::Files, 2, 1), keyWith(MaskKind::Files, 1, 1));
+}
+
 TEST_F(KeyLaw, ThePanoramaVoidsMaterialsOnly) {
   std::ofstream(house_.root() / "light.hdr") << "other light";
   EXPECT_EQ(changedSteps(before_, keysOf(house_.open())),
