@@ -3,6 +3,9 @@
 // triangles.
 #pragma once
 
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,16 +23,35 @@ struct DepthView {
   Planes weight;  // 1
 };
 
+// World axes, metres; all there is where nothing else is said.
+struct FusionBounds {
+  dvec3 low = dvec3(-std::numeric_limits<double>::infinity());
+  dvec3 high = dvec3(std::numeric_limits<double>::infinity());
+
+  bool contains(const dvec3& x) const {
+    return glm::all(glm::greaterThanEqual(x, low)) && glm::all(glm::lessThanEqual(x, high));
+  }
+};
+
 struct TsdfOptions {
   float voxel_m = 0.003f;
   float truncation_m = 0.012f;
+  FusionBounds bounds = {};
 };
 
-// Blocks are those that a depth sample falls near; work is parallel over blocks, views in order: the same for
-// any number of threads.
-Mesh fuseDepth(std::span<const DepthView> views, const TsdfOptions& options, Progress& progress);
+// The blocks that a depth sample inside the bounds falls near, in the order in which they are fused; by every
+// `every`th pixel a side, which tells about how many there are. Nothing: there are more than `most`.
+std::optional<std::vector<std::uint64_t>> touchedBlocks(std::span<const DepthView> views,
+                                                        const TsdfOptions& options, std::size_t most,
+                                                        int every, const Progress& progress);
+
+// Of `blocks`, a slab of them at a time; work is parallel over blocks, views in order: the same for any
+// number of threads. Nothing: more than `most_rows` vertices or triangles.
+std::optional<Mesh> fuseDepth(std::span<const DepthView> views, const TsdfOptions& options,
+                              std::span<const std::uint64_t> blocks, std::size_t most_rows,
+                              Progress& progress);
 
 // Keeps components with at least `share` of the largest one's triangles; drops unused vertices.
-Mesh keepLargeComponents(const Mesh& mesh, double share);
+Mesh keepLargeComponents(const Mesh& mesh, double share, const Progress& progress);
 
 }  // namespace beam

@@ -14,7 +14,6 @@ namespace beam {
 namespace {
 
 constexpr double kSmallest_m = 0.3, kTallest_m = 4;   // a subject in metres: a child's head to a jump
-constexpr double kPerson_m = 1.75;                    // what is scaled becomes as tall
 constexpr double kNearest_m = 0.3, kFarthest_m = 30;  // cameras of a rig in metres
 constexpr double kRig_m = 3;
 constexpr double kFar_m = 10;  // of the subject from the origin; floats are to resolve a skin

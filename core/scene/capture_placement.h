@@ -13,6 +13,8 @@
 
 namespace beam {
 
+inline constexpr double kPerson_m = 1.75;  // tall; as what nothing tells the size of is taken
+
 // What told the unit; kept in projects by these names.
 enum class UnitFrom {
   Convention,   // nothing else did: metres

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/method/evaluate_motion.h"
@@ -82,6 +83,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .work = {.photographs = true, .pixels = true, .downscale = kDownscale}},
                   {.id = "mesh",
                    .title = "Fuse a mesh",
+                   .unmasked_version = 1,
                    .inputs = {kImportStep, kScreenStep, kRefineStep},
                    .weight = 4,
                    .work = {.photographs = true, .pixels = true, .downscale = kDownscale},
@@ -192,9 +194,30 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
 
   void mesh(StepContext& c) const {
     const GaussianCloud cloud = readSplatPly(c.input(kRefineStep) / kCloudFile).cloud;
-    const Mesh mesh = extractMesh(cloud, trainingCameras(c), options_.mesh, c.device, c.progress);
-    writeMeshPly(c.folder / kMeshFile, mesh);
-    c.scores["triangles"] = static_cast<double>(mesh.triangles.size());
+    const MeshScope scope{.scene = c.capture.masks == MaskKind::None, .most_rows = kMostPlyRows};
+    Progress fusing = c.progress.part(0.95, {});
+    const ExtractedMesh made = extractMesh(cloud, trainingCameras(c), options_.mesh, scope, c.device, fusing);
+    if (made.reached) logWarning("surface.mesh: {}", limitText(made, scope));
+    if (scope.scene) logInfo("surface.mesh: voxels of {:.3g} m", made.voxel_m);
+    const Progress writing = c.progress.part(0.05, "writing the mesh");
+    writeMeshPly(c.folder / kMeshFile, made.mesh, {.progress = &writing});
+    c.scores["triangles"] = static_cast<double>(made.mesh.triangles.size());
+  }
+
+  std::string limitText(const ExtractedMesh& made, const MeshScope& scope) const {
+    const ExtractMeshOptions& o = options_.mesh;
+    const int most_voxels = mostVoxels(o, scope);
+    const bool rows = made.reached == MeshLimit::Rows;
+    const std::string asked =
+        fmt::format("voxels of {} m (surface.mesh.voxel_m){}", o.voxel_m,
+                    scope.scene ? fmt::format(", in proportion to the scene {:.3g} m,", made.asked_m) : "");
+    const std::string limit =
+        rows ? fmt::format("more triangles than the limit of {} of a mesh file", scope.most_rows)
+             : fmt::format("more voxels near surfaces than the limit of {} (surface.mesh.most_voxels)",
+                           most_voxels);
+    return fmt::format("{} would make {}: voxels of {:.3g} m are used; raise {}", asked, limit, made.voxel_m,
+                       rows || most_voxels == kMostVoxels ? "surface.mesh.voxel_m to choose their size"
+                                                          : "the limit for finer ones");
   }
 
   // Nothing that is not a number gets onto the disk.

@@ -34,7 +34,7 @@ std::vector<Camera> camerasAround() {
 Mesh meshOf(const GaussianCloud& cloud, const std::vector<Camera>& cameras, double voxel_m = 0.02) {
   const auto device = makeCpuDevice();
   Progress progress;
-  return extractMesh(cloud, cameras, {.voxel_m = voxel_m}, *device, progress);
+  return extractMesh(cloud, cameras, {.voxel_m = voxel_m}, {}, *device, progress).mesh;
 }
 
 const Mesh& sphereMesh() {
@@ -120,7 +120,7 @@ TEST(ExtractMesh, StopsWhenAsked) {
   stop.request_stop();
   Progress progress(stop.get_token());
   const auto device = makeCpuDevice();
-  EXPECT_THROW(extractMesh(sphereCloud(), camerasAround(), {}, *device, progress), Cancelled);
+  EXPECT_THROW(extractMesh(sphereCloud(), camerasAround(), {}, {}, *device, progress), Cancelled);
 }
 
 }  // namespace

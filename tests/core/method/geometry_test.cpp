@@ -39,7 +39,9 @@ TEST(Tsdf, FusesASphereWithinAVoxelAndFacesOutward) {
   const SphereCapture s{.cameras = 14, .size_px = 96};
   const TsdfOptions o{.voxel_m = 0.015f, .truncation_m = 0.06f};
   Progress progress;
-  const Mesh mesh = keepLargeComponents(fuseDepth(depthOfASphere(s), o, progress), 0.01);
+  const std::vector<DepthView> views = depthOfASphere(s);
+  const auto blocks = touchedBlocks(views, o, 1u << 20, 1, progress);
+  const Mesh mesh = keepLargeComponents(*fuseDepth(views, o, *blocks, 1u << 20, progress), 0.01, progress);
   ASSERT_GT(mesh.triangles.size(), 1000u);
   double error = 0;
   std::size_t outward = 0;
