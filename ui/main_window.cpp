@@ -28,6 +28,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/pipeline/machine_times.h"
 #include "ui/display_panel.h"
 #include "ui/elided_label.h"
 #include "ui/image_page.h"
@@ -401,15 +402,7 @@ void MainWindow::sizePanels() {
   resizeDocks({dock("timeline")}, {std::clamp(28 * height() / 100, 170, 270)}, Qt::Vertical);
 }
 
-void MainWindow::recallTimes() {
-  const QString kept = memory_.text("step_times");
-  if (kept.isEmpty()) return;
-  try {
-    forecast_.setMachineTimes(parseStepTimes(kept.toStdString()));
-  } catch (const Error& e) {
-    logDebug("the times of earlier runs are not readable: {}", e.what());
-  }
-}
+void MainWindow::recallTimes() { forecast_.setMachineTimes(readMachineTimes()); }
 
 void MainWindow::unsay(const QStringList& titles) {
   if (titles.contains(message_->title())) message_->hide();

@@ -9,6 +9,7 @@
 #include <QStackedWidget>
 
 #include "core/pipeline/copy_project.h"
+#include "core/pipeline/machine_times.h"
 #include "core/pipeline/project_history.h"
 #include "core/work/evaluate.h"
 #include "ui/elided_label.h"
@@ -229,7 +230,7 @@ void MainWindow::closeProject() {
 }
 
 void MainWindow::rememberProject() {
-  memory_.keepText("step_times", QString::fromStdString(toJson(forecast_.allTimes())));
+  keepMachineTimes(forecast_.allTimes());
   if (!model_.isOpen()) return;
   memory_.keepFrame(QString::fromStdString(model_.project().document().id), model_.frameName());
 }

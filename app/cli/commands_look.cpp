@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@
 #include "core/base/parallel.h"
 #include "core/io/capture_check.h"
 #include "core/pipeline/output_target.h"
-#include "core/pipeline/project_document.h"
+#include "core/pipeline/path_kind.h"
+#include "core/pipeline/project.h"
 #include "core/sample/make_sample.h"
 
 namespace beam {
@@ -22,14 +24,19 @@ namespace {
 
 struct CheckFlags {
   std::string path, up, unit;
+  std::optional<std::string> hold_out;
   AnswerFlags answer;
   bool strict = false;
-  std::vector<std::string> hold_out;
 };
 
 int runCheck(const CheckFlags& flags, Console& console) {
   ImportOptions options;
-  options.hold_out = flags.hold_out;
+  if (Project::isProject(flags.path)) {
+    throw Error(Error::Kind::Data,
+                fmt::format("beam check looks at a capture, a panorama or splats; \"{}\" {}", flags.path,
+                            kindInWords(flags.path)));
+  }
+  if (flags.hold_out) options.hold_out = parseHoldOut(*flags.hold_out);
   if (!flags.up.empty()) options.up = parseUpAxis(flags.up);
   if (!flags.unit.empty()) options.unit_m = parseUnit(flags.unit);
   requireAnswerTarget(flags.answer, "check");
@@ -74,8 +81,7 @@ void addCheckCommand(CLI::App& app, CommandContext& context) {
   command->add_flag("--strict", flags->strict, "End with 65 when there is a warning");
   command->add_option("--up", flags->up, "Up axis of the capture: +Y, +Z or -Y");
   command->add_option("--unit", flags->unit, kUnitHelp)->type_name("m|cm|mm|NUMBER");
-  command->add_option("--hold-out", flags->hold_out, "Cameras kept for testing: names or every Nth")
-      ->delimiter(',');
+  command->add_option("--hold-out", flags->hold_out, kHoldOutHelp)->type_name("N|NAMES");
   command->callback([flags, &context] {
     context.action = [flags, &context] { return runCheck(*flags, context.console); };
   });

@@ -11,7 +11,9 @@
 #include "app/cli/commands.h"
 #include "app/cli/run_flags.h"
 #include "core/base/error.h"
+#include "core/pipeline/path_kind.h"
 #include "core/pipeline/project_report.h"
+#include "core/pipeline/settings_report.h"
 #include "core/work/quality_history.h"
 
 namespace beam {
@@ -19,10 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 Project newProject(const fs::path& folder, const fs::path& capture, const Services& services) {
-  std::error_code failed;
-  if (!fs::is_directory(capture, failed)) {
-    throw Error(Error::Kind::Data, fmt::format("the capture \"{}\" is no folder", capture.string()));
-  }
+  requireCaptureFolder(capture);
   Project project = Project::create(folder, {}, services.pipeline);
   project.setCapture(capture);
   return project;
@@ -32,6 +31,7 @@ Project newProject(const fs::path& folder, const fs::path& capture, const Servic
 Project projectFor(const fs::path& folder, const fs::path& capture, const Services& services) {
   if (!Project::isProject(folder)) return newProject(folder, capture, services);
   Project project = Project::open(folder, services.pipeline);
+  requireCaptureFolder(capture);
   if (!project.isCapture(capture)) {
     throw Error(Error::Kind::Usage,
                 fmt::format("\"{}\" is a project of another capture, \"{}\"; choose another folder for --out",
@@ -159,14 +159,21 @@ void addStatusCommand(CLI::App& app, CommandContext& context) {
 }
 
 void addStagesCommand(CLI::App& app, CommandContext& context) {
-  CLI::App* command = app.add_subcommand("stages", "The stages, their steps and every setting");
+  CLI::App* command = app.add_subcommand(
+      "stages", "The stages, their steps and every setting; of a project with the values in force");
+  auto folder = std::make_shared<std::string>();
   auto flags = std::make_shared<AnswerFlags>();
+  command->add_option("PROJECT", *folder, "Project folder; without one what the presets say");
   addAnswerFlags(*command, *flags);
-  command->callback([flags, &context] {
-    context.action = [flags, &context] {
-      const StageRegistry& stages = context.services.pipeline->stages;
+  command->callback([folder, flags, &context] {
+    context.action = [folder, flags, &context] {
+      const std::shared_ptr<const PipelineSetup>& setup = context.services.pipeline;
+      std::optional<Project> project;
+      if (!folder->empty()) project = Project::open(*folder, setup);
+      const Project* of = project ? &*project : nullptr;
       requireAnswerTarget(*flags, "stages");
-      answer(*flags, "stages", context.console, stagesText(stages), [&] { return stagesJson(stages); });
+      answer(*flags, "stages", context.console, stagesText(*setup, of),
+             [&] { return stagesJson(*setup, of); });
       return 0;
     };
   });

@@ -13,7 +13,8 @@ namespace beam {
 
 class ConsoleReporter {
  public:
-  explicit ConsoleReporter(Console& console) : console_(console) {}
+  // `answers`: what a run leaves out is what standard output is for, else it is told as the rest.
+  explicit ConsoleReporter(Console& console, bool answers = true) : console_(console), answers_(answers) {}
   void report(const JobEvent& event);
 
  private:
@@ -28,6 +29,7 @@ class ConsoleReporter {
   void tellReused();
 
   Console& console_;
+  bool answers_;
   std::map<std::string, int> reused_;  // results by stage
 };
 

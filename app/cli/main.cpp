@@ -32,6 +32,13 @@ void addCommands(CLI::App& app, CommandContext& context) {
   addExportCommand(app, context);
 }
 
+// Of a flag that takes one value and is typed twice, the last holds: so that a script can add to a line.
+void lastOneWins(CLI::App& app) {
+  for (CLI::Option* option : app.get_options())
+    if (option->get_expected_max() == 1) option->take_last();
+  for (CLI::App* command : app.get_subcommands({})) lastOneWins(*command);
+}
+
 // The version; with --verbose also what it computes with.
 void printVersion(Console& console, bool verbose) {
   console.print(fmt::format("beam {}", versionText()));
@@ -52,6 +59,7 @@ int parseAndRun(int argc, char** argv, CommandContext& context) {
                "Details too: reused steps, what was chosen; of --version what it computes with");
   app.add_flag("-V,--version", version, "Print the version and exit");
   addCommands(app, context);
+  lastOneWins(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -4,34 +4,89 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <sstream>
 
 #include "app/cli/console_reporter.h"
+#include "app/cli/json_reporter.h"
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
+#include "core/io/image_file.h"
+#include "core/pipeline/machine_times.h"
+#include "core/pipeline/path_kind.h"
+#include "core/pipeline/run_estimate.h"
+#include "core/scene/environment.h"
 #include "core/scene/frame_list.h"
 
 namespace beam {
 namespace {
 
-std::vector<std::string> splitAtCommas(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    if (!part.empty()) parts.push_back(part);
-  }
-  return parts;
-}
-
-void setFromText(Project& project, const std::string& assignment) {
+std::string keyOf(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw Error(Error::Kind::Usage, fmt::format("--set expects key=value, found \"{}\"", assignment));
   }
-  project.set(assignment.substr(0, equals), parseFieldValue(assignment.substr(equals + 1)));
+  return assignment.substr(0, equals);
+}
+
+void setFromText(Project& project, const std::string& assignment) {
+  const std::string key = keyOf(assignment);
+  project.set(key, parseFieldValue(assignment.substr(key.size() + 1), project.value(key)));
+}
+
+void applySettings(Project& project, const ProjectFlags& flags) {
+  if (!flags.preset.empty()) project.setPreset(flags.preset);
+  if (flags.reset) {
+    for (const auto& [key, value] : std::map(project.document().settings)) project.reset(key);
+  }
+  for (const std::string& key : flags.unset) {
+    project.value(key);  // refuses unknown ones
+    for (const std::string& assignment : flags.set) {
+      if (keyOf(assignment) != key) continue;
+      throw Error(Error::Kind::Usage,
+                  fmt::format("--set and --unset both name {}; expected one of them", key));
+    }
+    project.reset(key);
+  }
+  for (const std::string& assignment : flags.set) setFromText(project, assignment);
+}
+
+// Read whole before anything is written: a project of a panorama that cannot be used would stop at Light.
+void requirePanorama(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) {
+    throw Error(Error::Kind::Data, fmt::format("--environment expects a panorama (.exr, .hdr); \"{}\" {}",
+                                               file.string(), kindInWords(file)));
+  }
+  makeEnvironment(readRadiance(file));
+}
+
+void keepTimes(const Project& project) {
+  StepTimes times = readMachineTimes();
+  times.add(readStepTimes(project));
+  keepMachineTimes(times);
+}
+
+int tellPlan(const Project& project, const RunRequest& request, const RunFlags& flags, Console& console) {
+  StepTimes times = readMachineTimes();
+  times.add(readStepTimes(project));
+  const RunEstimate estimate = estimateRun(project, request, times);
+  console.print(flags.json ? toJson(estimate) : toText(estimate));
+  return 0;
 }
 
 }  // namespace
+
+std::vector<std::string> splitAtCommas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    const std::size_t first = part.find_first_not_of(" \t");
+    if (first != std::string::npos)
+      parts.push_back(part.substr(first, part.find_last_not_of(" \t") - first + 1));
+  }
+  return parts;
+}
 
 double parseUnit(const std::string& text) {
   if (const std::optional<double> unit_m = unitNamed(text)) return *unit_m;
@@ -43,6 +98,10 @@ double parseUnit(const std::string& text) {
 
 void addProjectFlags(CLI::App& command, ProjectFlags& flags) {
   command.add_option("--preset", flags.preset, "draft, standard (when nothing is said) or paper");
+  command.add_flag("--reset", flags.reset, "Drop what was set before; with --preset the preset alone holds");
+  command.add_option("--unset", flags.unset, "Take a setting back to what the preset says")
+      ->type_name("KEY")
+      ->allow_extra_args(false);
   command.add_option("--set", flags.set, "A setting, e.g. --set surface.iterations=2000; see beam stages")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -50,9 +109,7 @@ void addProjectFlags(CLI::App& command, ProjectFlags& flags) {
       .add_option("--environment", flags.environment,
                   "Panorama of the light (.exr, .hdr), latitude-longitude")
       ->type_name("FILE");
-  command
-      .add_option("--hold-out", flags.hold_out, "Cameras kept for testing: N (every Nth), NAME,NAME or none")
-      ->type_name("N|NAMES");
+  command.add_option("--hold-out", flags.hold_out, kHoldOutHelp)->type_name("N|NAMES");
   command.add_option("--up", flags.up, "Up axis of the capture: +Y, +Z or -Y")->type_name("AXIS");
   command.add_option("--unit", flags.unit, kUnitHelp)->type_name("m|cm|mm|NUMBER");
 }
@@ -68,41 +125,56 @@ void addRunFlags(CLI::App& command, RunFlags& flags) {
       .add_option("--every", flags.every,
                   "Only every Kth frame, each built on the one K before; steps run for these frames alone")
       ->type_name("K");
+  command.add_flag("--dry-run", flags.dry_run,
+                   "Say what would be computed and about how long it takes, and change nothing");
+  command.add_flag("--json", flags.json,
+                   "Print what happens as JSON on standard output, one event a line; of --dry-run the plan");
   addDeviceFlags(command, flags.device);
 }
 
+std::vector<std::string> parseHoldOut(const std::string& text) {
+  std::vector<std::string> names = splitAtCommas(text);
+  if (names.empty()) {
+    throw Error(Error::Kind::Usage,
+                "--hold-out is empty; expected camera names, every how many (8), or none for no camera");
+  }
+  if (names.size() == 1 && (names.front() == "none" || names.front() == "NONE")) return {};
+  return names;
+}
+
 void applyFlags(Project& project, const ProjectFlags& flags) {
-  if (!flags.preset.empty()) project.setPreset(flags.preset);
-  for (const std::string& assignment : flags.set) setFromText(project, assignment);
+  applySettings(project, flags);
   if (flags.environment) {
-    if (!std::filesystem::is_regular_file(*flags.environment)) {
-      throw Error(Error::Kind::Data, fmt::format("the panorama \"{}\" is not there", *flags.environment));
-    }
+    requirePanorama(*flags.environment);
     project.setEnvironment(*flags.environment);
   }
-  if (flags.hold_out) {
-    project.setHoldOut(*flags.hold_out == "none" ? std::vector<std::string>{}
-                                                 : splitAtCommas(*flags.hold_out));
-  }
+  if (flags.hold_out) project.setHoldOut(parseHoldOut(*flags.hold_out));
   if (flags.up) project.setUp(parseUpAxis(*flags.up));
   if (flags.unit) project.setUnit(parseUnit(*flags.unit));
 }
 
 int runProject(Project project, const RunFlags& flags, CommandContext& context) {
   RunRequest request{.stage = flags.stage, .until = flags.until, .every = flags.every};
-  if (flags.frames != "all") request.frames = parseFrameList(flags.frames, project.capture().frames);
+  if (!isAllFrames(flags.frames)) request.frames = parseFrameList(flags.frames, project.capture().frames);
   makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
+  if (flags.dry_run) return tellPlan(project, request, flags, context.console);
   std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   project.save();
+  const Project kept = project;
   Runner runner;
   runner.start(std::move(project), std::move(request), std::move(device));
-  ConsoleReporter reporter(context.console);
+  ConsoleReporter reporter(context.console, !flags.json);
+  JsonReporter events(context.console);
   for (;;) {
     if (context.stop.stop_requested()) runner.requestStop();
     const std::optional<JobEvent> event = runner.waitPop(std::chrono::milliseconds(50));
     if (!event) continue;
     reporter.report(*event);
-    if (const auto* finished = std::get_if<JobFinished>(&*event)) return exitCode(*finished);
+    if (flags.json) events.report(*event);
+    const auto* finished = std::get_if<JobFinished>(&*event);
+    if (!finished) continue;
+    if (finished->computed > 0) keepTimes(kept);
+    return exitCode(*finished);
   }
 }
 

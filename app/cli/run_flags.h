@@ -14,7 +14,8 @@ namespace beam {
 // What a project remembers.
 struct ProjectFlags {
   std::string preset;
-  std::vector<std::string> set;  // key=value
+  bool reset = false;                   // what was set before is dropped
+  std::vector<std::string> unset, set;  // keys; key=value
   std::optional<std::string> environment, hold_out, up, unit;
 };
 
@@ -22,23 +23,35 @@ struct ProjectFlags {
 struct RunFlags {
   std::string stage, until, frames = "all";
   int every = 1;
+  bool dry_run = false, json = false;
   DeviceChoice device;
 };
+
+// The words of a list without the blanks around them; none that are empty.
+std::vector<std::string> splitAtCommas(const std::string& text);
 
 inline constexpr const char* kUnitHelp =
     "Unit of the capture: m, cm, mm, inch, foot or metres a unit; else its description or the subject's "
     "height "
     "tells";
+inline constexpr const char* kHoldOutHelp =
+    "Cameras kept for testing: N (every Nth), names and patterns (cam0*) with commas, or none";
 // Metres a unit; throws Error{Usage}.
 double parseUnit(const std::string& text);
 
 void addProjectFlags(CLI::App& command, ProjectFlags& flags);
 void addRunFlags(CLI::App& command, RunFlags& flags);
 
-// Throws Error{Usage} for unknown presets and settings, Error{Data} for a panorama that is not there.
+// Camera names, patterns or one number, with commas; "none": no camera. Throws Error{Usage} for an empty
+// list.
+std::vector<std::string> parseHoldOut(const std::string& text);
+
+// Throws Error{Usage} for unknown presets and settings, Error{Data} for a panorama that is not there or
+// cannot be read.
 void applyFlags(Project& project, const ProjectFlags& flags);
 
-// Saves the project, runs it and reports until the end; the exit code. What cannot be run is not saved.
+// Saves the project, runs it and reports until the end; the exit code. What cannot be run is not saved. A dry
+// run says what there is to do and saves nothing.
 int runProject(Project project, const RunFlags& flags, CommandContext& context);
 
 }  // namespace beam

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -25,6 +29,29 @@ FieldValue parseFieldValue(std::string_view text) {
   if (j.is_number()) return j.get<double>();
   if (j.is_string()) return j.get<std::string>();
   throw Error(Error::Kind::Usage, fmt::format("expected a JSON scalar, found {}", text));
+}
+
+FieldValue parseFieldValue(std::string_view text, const FieldValue& like) {
+  if (std::holds_alternative<bool>(like)) {
+    std::string word(text);
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (word == "true" || word == "yes" || word == "on" || word == "1") return true;
+    if (word == "false" || word == "no" || word == "off" || word == "0") return false;
+    return parseFieldValue(text);
+  }
+  if (std::holds_alternative<std::string>(like)) {
+    const FieldValue value = parseFieldValue(text);
+    return std::holds_alternative<std::string>(value) ? value : FieldValue(std::string(text));
+  }
+  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+  double number = 0;
+  const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (failed != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number))
+    return parseFieldValue(text);
+  const bool whole = number == std::floor(number) && std::abs(number) <= std::numeric_limits<int>::max();
+  if (std::holds_alternative<int>(like) && whole) return static_cast<int>(number);
+  return number;
 }
 
 std::string fieldsToJson(const std::vector<Field>& fields) {

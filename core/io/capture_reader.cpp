@@ -13,6 +13,7 @@
 #include "core/io/capture_description.h"
 #include "core/io/capture_pictures.h"
 #include "core/io/mesh_ply.h"
+#include "core/scene/name_pattern.h"
 #include "core/scene/transform.h"
 
 namespace beam {
@@ -52,8 +53,8 @@ std::optional<UpAxis> upFromCameras(const CaptureDescription& d) {
 void holdOut(CaptureDescription& d, const std::vector<std::string>& wanted) {
   for (const std::string& w : wanted) {
     const bool number = !w.empty() && w.find_first_not_of("0123456789") == std::string::npos;
-    const bool camera =
-        std::any_of(d.cameras.begin(), d.cameras.end(), [&](const auto& c) { return c.name == w; });
+    const bool camera = std::any_of(d.cameras.begin(), d.cameras.end(),
+                                    [&](const auto& c) { return matchesName(w, c.name); });
     if (number && !camera) {
       const std::size_t every = std::stoul(w.substr(0, 9));
       if (every < 2)
@@ -62,11 +63,11 @@ void holdOut(CaptureDescription& d, const std::vector<std::string>& wanted) {
       for (std::size_t i = 0; i < d.cameras.size(); i += every) d.cameras[i].split = Split::Test;
     } else if (camera) {
       for (DescribedCamera& c : d.cameras) {
-        if (c.name == w) c.split = Split::Test;
+        if (matchesName(w, c.name)) c.split = Split::Test;
       }
     } else {
       throw Error(Error::Kind::Usage,
-                  fmt::format("--hold-out {}: the capture has no camera of that name", w));
+                  fmt::format("--hold-out {}: the capture has no camera of that name or like it", w));
     }
   }
 }

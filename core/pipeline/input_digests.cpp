@@ -2,6 +2,7 @@
 #include "core/pipeline/input_digests.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <istream>
@@ -113,21 +114,29 @@ Digest InputDigests::calibration(const CaptureSet& capture) const {
   return digestOf(calibrationText(capture));
 }
 
-Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame, Split split) const {
-  // The kind is read off the first picture, which need not be one of these.
-  std::string text = fmt::format("masks {}\n", static_cast<int>(capture.masks));
+std::vector<PictureDigest> InputDigests::eachPicture(const CaptureSet& capture, FrameIndex frame,
+                                                     Split split) const {
+  std::vector<PictureDigest> pictures;
   for (std::size_t i = 0; i < capture.views.size(); ++i) {
     const ViewIndex view{static_cast<std::int32_t>(i)};
     if (capture.views[i].split != split || !capture.source->has(view, frame)) continue;
-    const std::vector<std::string> names = capture.source->files(view, frame);
+    PictureDigest picture{capture.views[i].name, capture.source->files(view, frame), {}};
     // Gone since the capture was read: as if it had never been there. Out of reach: unreadable.
     std::error_code out_of_reach;
-    if (!names.empty() && !std::filesystem::exists(names.front(), out_of_reach) && !out_of_reach) continue;
-    text += fmt::format("view {}:{}", capture.views[i].name.size(), capture.views[i].name);
-    for (const std::string& name : names) text += fmt::format(" {}", fileText(*this, name));
-    if (names.empty()) text += fmt::format(" {}", contentText(*capture.source, view, frame));
-    text += '\n';
+    const bool gone = !picture.files.empty() && !std::filesystem::exists(picture.files.front(), out_of_reach);
+    if (gone && !out_of_reach) continue;
+    for (const std::string& name : picture.files) picture.words.push_back(fileText(*this, name));
+    if (picture.files.empty()) picture.words.push_back(contentText(*capture.source, view, frame));
+    pictures.push_back(std::move(picture));
   }
+  return pictures;
+}
+
+Digest InputDigests::pictures(const CaptureSet& capture, FrameIndex frame, Split split) const {
+  // The kind is read off the first picture, which need not be one of these.
+  std::string text = fmt::format("masks {}\n", static_cast<int>(capture.masks));
+  for (const PictureDigest& p : eachPicture(capture, frame, split))
+    text += fmt::format("view {}:{} {}\n", p.view.size(), p.view, fmt::join(p.words, " "));
   return digestOf(text);
 }
 

@@ -22,10 +22,19 @@ inline constexpr const char* kCamerasFile = "cameras.txt";  // of the capture's 
 // Its cameras back. Throws Error{Data} for a line that it does not understand.
 std::vector<View> viewsOfCalibration(const std::string& text);
 
+// What a picture of a frame and its mask say.
+struct PictureDigest {
+  std::string view;                // its camera
+  std::vector<std::string> files;  // paths; none: of a source without files
+  std::vector<std::string> words;  // digests, one a file, or "unreadable"; one of a source without files
+};
+
 // Safe to use from several threads.
 class InputDigests {
  public:
   Digest calibration(const CaptureSet& capture) const;
+  // Those of the frame's views of `split` that are there, in the order of the views; what `pictures` is of.
+  std::vector<PictureDigest> eachPicture(const CaptureSet& capture, FrameIndex frame, Split split) const;
   // Pictures and masks of the frame's views of `split`. Never throws for one that is gone or cannot be read:
   // a run leaves it out, and the state of a project must not hang on it.
   Digest pictures(const CaptureSet& capture, FrameIndex frame, Split split) const;

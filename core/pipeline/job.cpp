@@ -13,6 +13,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/io/file.h"
+#include "core/pipeline/pending_reason.h"
 #include "core/pipeline/version.h"
 #include "core/render/device.h"
 
@@ -346,6 +347,7 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
   record.work = project_.workOf(ref.step, record.ingredients.later);
   record.peak_memory_bytes = peakMemoryBytes();
   record.scores = context.scores;
+  record.pictures = picturesRead(project_, info, frame);
   std::lock_guard lock(warnings_mutex_);
   record.warnings = warnings_;
 }

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/pipeline/lost_capture.h"
 #include "core/pipeline/output_target.h"
+#include "core/pipeline/path_kind.h"
 #include "core/pipeline/presets.h"
 #include "core/pipeline/project_history.h"
 
@@ -49,6 +50,12 @@ Project Project::open(const fs::path& folder, std::shared_ptr<const PipelineSetu
   if (!isProject(folder) && looksLikeProject(folder)) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\" is a project that has lost its project.json; {}",
                                                folder.string(), historyAdvice(folder)));
+  }
+  std::error_code failed;
+  const bool file = fs::exists(folder, failed) && !fs::is_directory(folder, failed);
+  if (!isProject(folder) && (file || beam::isCapture(folder))) {
+    throw Error(Error::Kind::Data, fmt::format("expected a project, Name.beam; \"{}\" {}", folder.string(),
+                                               kindInWords(folder)));
   }
   if (!isProject(folder)) {
     throw Error(Error::Kind::Data,
@@ -243,6 +250,24 @@ void Project::setLook(const Look& look) {
 
 void Project::removeLook(std::string_view name) {
   std::erase_if(document_.looks, [&](const Look& look) { return look.name == name; });
+}
+
+Project Project::withSettingsOf(const ProjectDocument& earlier, bool takes_too) const {
+  Project copy = sketch();
+  ProjectDocument& d = copy.document_;
+  const bool other_import =
+      d.hold_out != earlier.hold_out || d.up != earlier.up || d.world != earlier.world || finds_placement_;
+  d.preset = earlier.preset;
+  d.settings = earlier.settings;
+  d.environment = earlier.environment;
+  d.hold_out = earlier.hold_out;
+  d.up = earlier.up;
+  d.world = earlier.world;
+  if (takes_too) d.takes = earlier.takes;
+  copy.finds_placement_ = false;
+  copy.unit_m_.reset();
+  if (other_import) copy.forgetCapture();
+  return copy;
 }
 
 void Project::setUnit(double unit_m) {

@@ -79,6 +79,9 @@ class Project {
   // Error{Usage} for a name that is none (isLookName) and for more than kMostLooks.
   void setLook(const Look& look);
   void removeLook(std::string_view name);  // nothing when there is none
+  // A copy, never saved, in which preset, settings, light, held-out cameras, axes and place of the capture
+  // are those of `earlier`, a version of this project; its takes, too, where they are asked for.
+  Project withSettingsOf(const ProjectDocument& earlier, bool takes_too = false) const;
   // Metres a unit of the capture; its place is found anew with it.
   void setUnit(double unit_m);
   // Writes project.json when it differs from what is on disk; nothing else ever does. What a new project

@@ -191,8 +191,8 @@ FileLock lockProject(const fs::path& project) {
 }
 
 UpAxis parseUpAxis(std::string_view text) {
-  if (text == "+Y" || text == "Y" || text == "y") return UpAxis::PlusY;
-  if (text == "+Z" || text == "Z" || text == "z") return UpAxis::PlusZ;
+  if (text == "+Y" || text == "+y" || text == "Y" || text == "y") return UpAxis::PlusY;
+  if (text == "+Z" || text == "+z" || text == "Z" || text == "z") return UpAxis::PlusZ;
   if (text == "-Y" || text == "-y") return UpAxis::MinusY;
   throw Error(Error::Kind::Usage, fmt::format("up axis: expected +Y, +Z or -Y, found \"{}\"", text));
 }

@@ -2,11 +2,14 @@
 #include "core/pipeline/project_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
-#include "core/base/field_text.h"
+#include "core/pipeline/pending_reason.h"
 
 namespace beam {
 namespace {
@@ -15,32 +18,6 @@ using Json = nlohmann::ordered_json;
 
 Json toJsonValue(const FieldValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);
-}
-
-std::vector<Field> defaultsOf(const StageRegistry& stages, const StageInfo& info) {
-  FieldList list;
-  stages.make(info.id)->parameters(list);
-  for (Field& field : list.fields) field.info.name = info.id + "." + field.info.name;
-  return std::move(list.fields);
-}
-
-Json toJsonValue(const Field& field) {
-  const FieldInfo& info = field.info;
-  Json j = {
-      {"key", info.name}, {"label", info.label}, {"help", info.help}, {"default", toJsonValue(field.value)}};
-  if (std::isfinite(info.min)) j["min"] = info.min;
-  if (std::isfinite(info.max)) j["max"] = info.max;
-  if (!info.unit.empty()) j["unit"] = info.unit;
-  if (!info.choices.empty()) j["choices"] = info.choices;
-  if (info.advanced) j["advanced"] = true;
-  if (info.effect == Effect::SpeedOnly) j["speed_only"] = true;
-  return j;
-}
-
-std::string limitsText(const FieldInfo& info) {
-  if (!info.choices.empty()) return fmt::format(" ({})", fmt::join(info.choices, ", "));
-  const std::string range = rangeText(info);
-  return range.empty() ? range : fmt::format(" ({})", range);
 }
 
 std::vector<FrameIndex> framesOf(const Project& project, const StepInfo& step) {
@@ -97,28 +74,6 @@ Json takesJson(const Project& project) {
   return takes;
 }
 
-Json idsJson(const std::vector<StepId>& steps) {
-  Json ids = Json::array();
-  for (const StepId& step : steps) ids.push_back(step.text());
-  return ids;
-}
-
-Json idsJson(const Later& later) {
-  return {{"inputs", idsJson(later.inputs)}, {"previous", idsJson(later.previous)}};
-}
-
-const char* toText(Frames frames) {
-  switch (frames) {
-    case Frames::Every:
-      return "every";
-    case Frames::FirstOfTake:
-      return "first of take";
-    case Frames::InTakes:
-      return "in takes";
-  }
-  return "";
-}
-
 std::string failuresText(const Project& project, const StepId& id, const StepInfo& step) {
   std::string text;
   for (const FrameIndex frame : framesOf(project, step)) {
@@ -128,10 +83,46 @@ std::string failuresText(const Project& project, const StepId& id, const StepInf
   return text;
 }
 
-Json stepJson(const Project& project, const StepId& id, const StepInfo& step) {
+// Asked for where something is pending alone: it reads every record.
+class Reasons {
+ public:
+  explicit Reasons(const Project& project) : project_(project) {}
+  std::vector<std::string> of(const StepId& step, FrameIndex frame) {
+    if (!reasons_) reasons_.emplace(project_);
+    return reasons_->of(step, frame);
+  }
+
+ private:
+  const Project& project_;
+  std::optional<PendingReasons> reasons_;
+};
+
+// A line for each cause, with the frames it is about where not all that are pending have it.
+std::string reasonsText(const Project& project, const StepId& id, const StepInfo& step, Reasons& reasons) {
+  std::map<std::vector<std::string>, std::vector<std::string>> frames_by_reasons;
+  for (const FrameIndex frame : framesOf(project, step)) {
+    if (project.state(id, frame) == StepState::Pending)
+      frames_by_reasons[reasons.of(id, frame)].push_back(frameName(project, frame));
+  }
+  std::string text;
+  for (const auto& [why, frames] : frames_by_reasons) {
+    if (why.empty()) continue;
+    const bool some = frames_by_reasons.size() > 1;
+    const std::string more = frames.size() > 1 ? fmt::format(" to {}", frames.back()) : "";
+    text += fmt::format("    because {}{}\n", fmt::join(why, ", "),
+                        some ? fmt::format(" ({} frame{}, {}{})", frames.size(),
+                                           frames.size() == 1 ? "" : "s", frames.front(), more)
+                             : std::string());
+  }
+  return text;
+}
+
+Json stepJson(const Project& project, const StepId& id, const StepInfo& step, Reasons& reasons) {
   Json j = {{"id", id.text()}, {"title", step.title}};
   if (!step.per_frame) {
-    j["state"] = toText(project.state(id, FrameIndex{}));
+    const StepState state = project.state(id, FrameIndex{});
+    j["state"] = toText(state);
+    if (state == StepState::Pending) j["reasons"] = reasons.of(id, FrameIndex{});
     j["key"] = project.key(id, FrameIndex{}).hex();
     return j;
   }
@@ -140,6 +131,7 @@ Json stepJson(const Project& project, const StepId& id, const StepInfo& step) {
     const StepState state = project.state(id, frame);
     Json f = {{"state", toText(state)}};
     if (state != StepState::NotNeeded) f["key"] = project.key(id, frame).hex();
+    if (state == StepState::Pending) f["reasons"] = reasons.of(id, frame);
     if (state == StepState::Failed) f["message"] = project.failureOf(id, frame);
     if (state == StepState::Done) {
       if (const auto record = project.record(id, frame)) f["seconds"] = record->seconds;
@@ -177,6 +169,7 @@ std::string statusText(const Project& project) {
   for (const auto& [key, value] : project.document().settings)
     text += fmt::format("  {} = {}\n", key, toText(value));
   text += takesText(project);
+  Reasons reasons(project);
   for (const StageInfo& info : project.setup().stages.infos()) {
     text += fmt::format("{}\n", info.title);
     if (const std::string why = project.blockedReason(info.id); !why.empty()) {
@@ -186,7 +179,7 @@ std::string statusText(const Project& project) {
     for (const StepInfo& step : info.steps) {
       const StepId id(info.id, step.id);
       text += fmt::format("  {:<18} {}\n", id.text(), stepText(project, id, step)) +
-              failuresText(project, id, step);
+              failuresText(project, id, step) + reasonsText(project, id, step, reasons);
     }
   }
   text.pop_back();
@@ -204,53 +197,14 @@ std::string statusJson(const Project& project) {
   j["frames"] = project.capture().frames;
   j["takes"] = takesJson(project);
   j["stages"] = Json::array();
+  Reasons reasons(project);
   for (const StageInfo& info : project.setup().stages.infos()) {
     Json stage = {{"id", info.id}, {"title", info.title}};
     if (const std::string why = project.blockedReason(info.id); !why.empty()) stage["blocked"] = why;
     stage["steps"] = Json::array();
     for (const StepInfo& step : info.steps)
-      stage["steps"].push_back(stepJson(project, StepId(info.id, step.id), step));
+      stage["steps"].push_back(stepJson(project, StepId(info.id, step.id), step, reasons));
     j["stages"].push_back(std::move(stage));
-  }
-  return j.dump(2, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string stagesText(const StageRegistry& stages) {
-  std::string text;
-  for (const StageInfo& info : stages.infos()) {
-    text += fmt::format("{}: {} {}\n", info.id, info.title, info.summary);
-    for (const StepInfo& step : info.steps) {
-      text += fmt::format("  step {}.{}: {}{}\n", info.id, step.id, step.title,
-                          step.source.empty() ? "" : " (" + step.source + ")");
-    }
-    for (const Field& field : defaultsOf(stages, info)) {
-      text += fmt::format("  {} = {}{}: {}\n", field.info.name, toText(field.value), limitsText(field.info),
-                          field.info.help);
-    }
-  }
-  if (!text.empty()) text.pop_back();
-  return text;
-}
-
-std::string stagesJson(const StageRegistry& stages) {
-  Json j = Json::array();
-  for (const StageInfo& info : stages.infos()) {
-    Json stage = {{"id", info.id}, {"title", info.title}, {"summary", info.summary}};
-    stage["steps"] = Json::array();
-    for (const StepInfo& step : info.steps) {
-      stage["steps"].push_back({{"id", info.id + "." + step.id},
-                                {"title", step.title},
-                                {"source", step.source},
-                                {"version", step.version},
-                                {"unmasked_version", step.unmasked_version},
-                                {"per_frame", step.per_frame},
-                                {"frames", toText(step.frames)},
-                                {"inputs", idsJson(step.inputs)},
-                                {"later", idsJson(step.later)}});
-    }
-    stage["settings"] = Json::array();
-    for (const Field& field : defaultsOf(stages, info)) stage["settings"].push_back(toJsonValue(field));
-    j.push_back(std::move(stage));
   }
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `beam status` and `beam stages` say, for people and as JSON.
+// What `beam status` says, for people and as JSON: what is done, and why what is not is not.
 #pragma once
 
 #include <string>
@@ -12,9 +12,5 @@ const char* toText(StepState state);  // "done"
 
 std::string statusText(const Project& project);
 std::string statusJson(const Project& project);
-
-// Stages, steps and every setting with default, range and help.
-std::string stagesText(const StageRegistry& stages);
-std::string stagesJson(const StageRegistry& stages);
 
 }  // namespace beam

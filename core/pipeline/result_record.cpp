@@ -60,6 +60,7 @@ std::string toJson(const ResultRecord& r) {
   j["peak_memory_bytes"] = r.peak_memory_bytes;
   j["warnings"] = r.warnings;
   j["scores"] = r.scores;
+  if (!r.pictures.empty()) j["pictures"] = r.pictures;
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -87,6 +88,7 @@ ResultRecord parseResultRecord(std::string_view json) {
     r.peak_memory_bytes = j.at("peak_memory_bytes").get<std::uint64_t>();
     r.warnings = j.at("warnings").get<std::vector<std::string>>();
     r.scores = j.at("scores").get<std::map<std::string, double>>();
+    if (j.contains("pictures")) r.pictures = j["pictures"].get<std::map<std::string, std::string>>();
     return r;
   });
 }

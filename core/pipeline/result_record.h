@@ -32,6 +32,7 @@ struct ResultRecord {
   std::uint64_t peak_memory_bytes = 0;  // of the process so far
   std::vector<std::string> warnings;
   std::map<std::string, double> scores;
+  std::map<std::string, std::string> pictures = {};  // picturesRead; of earlier versions empty
 };
 
 std::string toJson(const ResultRecord& record);

@@ -1,34 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/run_estimate.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
+
+#include "core/base/duration_text.h"
 
 namespace beam {
 namespace {
 
 class Estimator {
  public:
-  Estimator(const Project& project, const StepTimes& times) : project_(project), times_(times) {
+  Estimator(const Project& project, const RunPlan& plan, const StepTimes& times)
+      : project_(project), times_(times) {
     out_.measured = !times.empty();
+    out_.notes = plan.notes;
+    for (const auto* steps : {&plan.project_steps, &plan.frame_steps})
+      for (const StepId& id : *steps) add(id);
+    for (const StepId& id : plan.lead_steps) add(id);
   }
 
   // `owned`: nobody asked for a lead.
   void step(const StepId& id, const Take& take, FrameIndex frame, bool owned) {
     const StepInfo& info = project_.setup().stages.step(id);
     if (info.per_frame && !applies(info, take, frame)) return;
-    ++out_.steps_total;
+    StepEstimate& step = out_.steps[places_.at(id)];
+    ++out_.steps_total, ++step.total;
     const KeyIngredients ingredients = project_.ingredients(id, take, frame);
     if (project_.store().has(keyOf(ingredients))) return;
-    ++out_.steps_missing;
+    ++out_.steps_missing, ++step.missing;
+    if (info.per_frame)
+      step.frames.push_back(project_.capture().frames[static_cast<std::size_t>(frame.value)]);
     if (info.per_frame && owned) to_do_.insert(frame.value);
     const auto seconds = times_.guess(kindOf(ingredients), sizeOf(project_, id, ingredients.later));
     if (!seconds) {
-      out_.measured = false;
+      out_.measured = step.measured = false;
       return;
     }
-    out_.seconds_low += seconds->low;
-    out_.seconds_high += seconds->high;
+    out_.seconds_low += seconds->low, step.seconds_low += seconds->low;
+    out_.seconds_high += seconds->high, step.seconds_high += seconds->high;
   }
 
   RunEstimate finish(const RunPlan& plan) {
@@ -39,11 +55,47 @@ class Estimator {
   }
 
  private:
+  void add(const StepId& id) {
+    if (!places_.emplace(id, out_.steps.size()).second) return;
+    StepEstimate step;
+    step.step = id;
+    step.per_frame = project_.setup().stages.step(id).per_frame;
+    out_.steps.push_back(std::move(step));
+  }
+
   const Project& project_;
   const StepTimes& times_;
   RunEstimate out_;
   std::set<std::int32_t> to_do_;
+  std::map<StepId, std::size_t> places_;  // in out_.steps
 };
+
+std::string aboutText(double low, double high) {
+  const std::string from = durationText(low), to = durationText(high);
+  return from == to ? fmt::format("about {}", to) : fmt::format("{} to {}", from, to);
+}
+
+std::string timeText(const StepEstimate& step) {
+  if (step.missing == 0) return "";
+  return step.measured ? aboutText(step.seconds_low, step.seconds_high) : "not known";
+}
+
+// "000002, 000006" of few; "000000 to 000007" of more.
+std::string framesText(const StepEstimate& step) {
+  if (step.frames.size() <= 3) return fmt::format("{}", fmt::join(step.frames, ", "));
+  return fmt::format("{} to {}", step.frames.front(), step.frames.back());
+}
+
+std::string totalText(const RunEstimate& e) {
+  if (e.steps_missing == 0) return fmt::format("nothing to compute: all {} results are there", e.steps_total);
+  std::string text = fmt::format("{} of {} results to compute, in {} of {} frame{}", e.steps_missing,
+                                 e.steps_total, e.frames, e.frames_total, e.frames_total == 1 ? "" : "s");
+  text += e.measured
+              ? fmt::format(": {}, by what was measured here", aboutText(e.seconds_low, e.seconds_high))
+              : std::string("; how long it takes is known once its steps have run here");
+  if (e.leaves_take) text += "\na frame of a take is fitted apart from it";
+  return text;
+}
 
 }  // namespace
 
@@ -52,7 +104,7 @@ RunEstimate estimateRun(const Project& project, const RunRequest& request, const
   makeRunPlan(sketch, request);  // refuses before takes change
   arrangeTakes(sketch, request);
   const RunPlan plan = makeRunPlan(sketch, request);
-  Estimator estimator(sketch, times);
+  Estimator estimator(sketch, plan, times);
   for (const StepId& step : plan.project_steps) estimator.step(step, {}, {}, false);
   for (const Turn& turn : plan.turns) {
     const Take take = sketch.takeOf(turn.of);
@@ -64,6 +116,44 @@ RunEstimate estimateRun(const Project& project, const RunRequest& request, const
     return project.takeOf(turn.frame).before(turn.frame) && !sketch.takeOf(turn.frame).before(turn.frame);
   });
   return out;
+}
+
+std::string toText(const RunEstimate& estimate) {
+  std::size_t widest = 4;
+  for (const StepEstimate& step : estimate.steps) widest = std::max(widest, step.step.text().size());
+  std::string text = fmt::format("{:<{}}  missing     of  {:<18}  frames\n", "step", widest, "time");
+  for (const StepEstimate& step : estimate.steps) {
+    if (step.total == 0) continue;
+    std::string line = fmt::format("{:<{}}  {:>7}  {:>5}  {:<18}  {}", step.step.text(), widest, step.missing,
+                                   step.total, timeText(step), framesText(step));
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  for (const std::string& note : estimate.notes) text += note + "\n";
+  return text + totalText(estimate);
+}
+
+std::string toJson(const RunEstimate& estimate) {
+  using Json = nlohmann::ordered_json;
+  const auto seconds = [](bool measured, double low, double high) {
+    return measured ? Json{{"low", low}, {"high", high}} : Json();
+  };
+  Json j = {{"results_missing", estimate.steps_missing},
+            {"results", estimate.steps_total},
+            {"frames_missing", estimate.frames},
+            {"frames", estimate.frames_total},
+            {"seconds", seconds(estimate.measured, estimate.seconds_low, estimate.seconds_high)},
+            {"leaves_take", estimate.leaves_take},
+            {"notes", estimate.notes},
+            {"steps", Json::array()}};
+  for (const StepEstimate& step : estimate.steps) {
+    j["steps"].push_back({{"id", step.step.text()},
+                          {"per_frame", step.per_frame},
+                          {"missing", step.missing},
+                          {"results", step.total},
+                          {"frames", step.frames},
+                          {"seconds", seconds(step.measured, step.seconds_low, step.seconds_high)}});
+  }
+  return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace beam

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <map>
 #include <set>
@@ -17,7 +18,8 @@ namespace {
 [[noreturn]] void notUnderstood(std::string_view item) {
   throw Error(
       Error::Kind::Usage,
-      fmt::format("frames: \"{}\" is not understood (expected for example 0-7, 1,5, 1-9x2 or all)", item));
+      fmt::format("frames: \"{}\" is not understood (expected for example 0-7, 1,5, 12-, 1-9x2 or all)",
+                  item));
 }
 
 long long parseNumber(std::string_view text, std::string_view item) {
@@ -32,19 +34,33 @@ struct Span {
   long long first, last, stride;
 };
 
-// "5", "1-9" or "1-9x2".
-Span parseSpan(std::string_view item) {
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool isAll(std::string_view word) {
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  constexpr std::string_view kAll = "all";
+  return std::equal(word.begin(), word.end(), kAll.begin(), kAll.end(), same);
+}
+
+// "5", "1-9", "1-" (to the last of `numbers`) or "1-9x2".
+Span parseSpan(std::string_view item, const std::map<long long, FrameIndex>& numbers) {
   const std::size_t dash = item.find('-');
   if (dash == std::string_view::npos) {
     const long long n = parseNumber(item, item);
     return {n, n, 1};
   }
-  const std::size_t times = item.find('x', dash);
+  const std::size_t times = item.find_first_of("xX", dash);
   const bool strided = times != std::string_view::npos;
-  const Span span{
-      parseNumber(item.substr(0, dash), item),
-      parseNumber(item.substr(dash + 1, strided ? times - dash - 1 : std::string_view::npos), item),
-      strided ? parseNumber(item.substr(times + 1), item) : 1};
+  const std::string_view high =
+      trimmed(item.substr(dash + 1, strided ? times - dash - 1 : std::string_view::npos));
+  if (numbers.empty()) notUnderstood(item);
+  const Span span{parseNumber(trimmed(item.substr(0, dash)), item),
+                  high.empty() ? numbers.rbegin()->first : parseNumber(high, item),
+                  strided ? parseNumber(trimmed(item.substr(times + 1)), item) : 1};
   if (span.last < span.first || span.stride < 1) notUnderstood(item);
   return span;
 }
@@ -58,6 +74,8 @@ std::string numbersText(const std::map<long long, FrameIndex>& by_number) {
 
 }  // namespace
 
+bool isAllFrames(std::string_view list) { return isAll(trimmed(list)); }
+
 std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<std::string>& frames) {
   std::map<long long, FrameIndex> by_number;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -67,14 +85,14 @@ std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<
   std::set<FrameIndex> chosen;
   while (true) {
     const std::size_t comma = list.find(',');
-    const std::string_view item = list.substr(0, comma);
+    const std::string_view item = trimmed(list.substr(0, comma));
     const auto named = std::find(frames.begin(), frames.end(), item);
-    if (item == "all") {
+    if (isAll(item)) {
       for (std::size_t i = 0; i < frames.size(); ++i) chosen.insert(FrameIndex{static_cast<std::int32_t>(i)});
     } else if (named != frames.end()) {
       chosen.insert(FrameIndex{static_cast<std::int32_t>(named - frames.begin())});
     } else {
-      const Span span = parseSpan(item);
+      const Span span = parseSpan(item, by_number);
       // Both ends must exist: a typo must not shrink a run silently. Gaps inside are the capture's own.
       if (!by_number.count(span.first) || by_number.rbegin()->first < span.last) {
         throw Error(Error::Kind::Usage, fmt::format("frames: \"{}\" reaches beyond the capture, which has {}",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LIST of the command line: "0-7", "1,5", "1-9x2", "all"; numbers as in the capture's own frame names.
+// LIST of the command line: "0-7", "1,5", "12-", "1-9x2", "all" or "ALL", with blanks; numbers as in the
+// capture's own frame names.
 #pragma once
 
 #include <string>
@@ -9,6 +10,9 @@
 #include "core/scene/ids.h"
 
 namespace beam {
+
+// Whether the list is the one word "all", however it is written.
+bool isAllFrames(std::string_view list);
 
 // Positions in `frames` (the capture's names), ascending, each once. An item may also be a whole frame name.
 // Throws Error{Usage} for words it does not understand and for numbers that the capture does not have.

@@ -59,6 +59,7 @@ class Running {
     std::vector<char*> arguments = {const_cast<char*>(program)};
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
+    ::setenv("XDG_STATE_HOME", (scratch / "state").c_str(), 1);  // what it remembers of this machine
     const rlimit limit{max_file_bytes, RLIM_INFINITY};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     ::execv(program, arguments.data());

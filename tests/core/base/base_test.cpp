@@ -92,6 +92,24 @@ TEST(Fields, JsonHoldsEveryValue) {
   EXPECT_THROW(parseFieldValue("[1]"), Error);
 }
 
+TEST(Fields, ValuesAreTakenAsPeopleTypeThem) {
+  for (const char* yes : {"true", "yes", "on", "ON", "1"})
+    EXPECT_EQ(std::get<bool>(parseFieldValue(yes, false)), true) << yes;
+  for (const char* no : {"false", "no", "Off", "0"})
+    EXPECT_EQ(std::get<bool>(parseFieldValue(no, true)), false) << no;
+  EXPECT_EQ(std::get<int>(parseFieldValue("1e4", 0)), 10000);
+  EXPECT_EQ(std::get<int>(parseFieldValue("+7", 0)), 7);
+  EXPECT_EQ(std::get<double>(parseFieldValue(".5", 0.0)), 0.5);
+  EXPECT_EQ(std::get<double>(parseFieldValue("3", 0.0)), 3.0);
+  EXPECT_EQ(std::get<std::string>(parseFieldValue("007", std::string())), "007");
+  EXPECT_EQ(std::get<std::string>(parseFieldValue("\"a b\"", std::string())), "a b");
+  // What does not fit is left for the field to refuse.
+  EXPECT_EQ(std::get<std::string>(parseFieldValue("maybe", false)), "maybe");
+  EXPECT_EQ(std::get<double>(parseFieldValue("1.5", 0)), 1.5);
+  EXPECT_EQ(std::get<std::string>(parseFieldValue("many", 0)), "many");
+  EXPECT_EQ(std::get<double>(parseFieldValue("1e300", 0)), 1e300);
+}
+
 TEST(Fields, ANumberThatNoIntegerHoldsDoesNotWrap) {
   EXPECT_EQ(std::get<double>(parseFieldValue("18446744073709551615")), 18446744073709551615.0);
   EXPECT_EQ(std::get<double>(parseFieldValue("4294967297")), 4294967297.0);

@@ -25,6 +25,17 @@ TEST(FrameList, UnderstandsRunsSinglesStridesAndAll) {
   EXPECT_EQ(parse("7"), (std::vector<int>{7}));
 }
 
+TEST(FrameList, TakesOpenRangesBlanksAndAnyCase) {
+  EXPECT_EQ(parse("7-"), (std::vector<int>{7, 8, 9}));
+  EXPECT_EQ(parse("3-x3"), (std::vector<int>{3, 6, 9}));
+  EXPECT_EQ(parse(" 1 - 3 , 5 "), (std::vector<int>{1, 2, 3, 5}));
+  EXPECT_EQ(parse("1-5X2"), (std::vector<int>{1, 3, 5}));
+  EXPECT_EQ(parse("ALL").size(), 10u);
+  EXPECT_EQ(parse("8-, 0").size(), 3u);
+  EXPECT_TRUE(isAllFrames(" All "));
+  EXPECT_FALSE(isAllFrames("all,1"));
+}
+
 TEST(FrameList, GivesEachFrameOnceAndInOrder) {
   EXPECT_EQ(parse("5,1-3,2,5"), (std::vector<int>{1, 2, 3, 5}));
 }
@@ -41,7 +52,7 @@ TEST(FrameList, RefusesWhatTheCaptureDoesNotHave) {
 }
 
 TEST(FrameList, RefusesWordsItDoesNotUnderstand) {
-  for (const char* list : {"", "a", "1-", "-1", "3-1", "1-5x0", "1,,2", "1-5x", "1.5", " 1", "1x2"}) {
+  for (const char* list : {"", " ", "a", "-", "-1", "3-1", "1-5x0", "1,,2", "1-5x", "1.5", "1x2", "1 2"}) {
     try {
       parse(list);
       ADD_FAILURE() << "\"" << list << "\" was taken";
