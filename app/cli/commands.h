@@ -28,6 +28,9 @@ struct CommandContext {
 // --force, of commands that write files.
 void addForceFlag(CLI::App& command, bool& force);
 
+// --strict, of commands that draw, write or score what is solved: WantedResults::strict.
+void addStrictFlag(CLI::App& command, bool& strict);
+
 // --threads N, --simd auto|avx512|avx2|scalar, --device cpu: for every command that computes.
 void addDeviceFlags(CLI::App& command, DeviceChoice& choice);
 

@@ -19,6 +19,7 @@ namespace {
 struct EvaluateFlags {
   std::string project, truth, pictures, frames = "all";
   AnswerFlags answer;
+  bool strict = false;
   DeviceChoice device;
 };
 
@@ -77,7 +78,7 @@ std::string scoreText(const ScoreTable& table) {
 
 int runEvaluate(const EvaluateFlags& flags, CommandContext& context) {
   const EvaluateRequest request{Project::open(flags.project, context.services.pipeline), flags.frames,
-                                flags.truth, flags.pictures};
+                                flags.truth, flags.pictures, flags.strict};
   requireAnswerTarget(flags.answer, kCommand);
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
@@ -85,7 +86,7 @@ int runEvaluate(const EvaluateFlags& flags, CommandContext& context) {
   context.console.endProgress();
   keepEvaluation(request.project, outcome);
   answer(flags.answer, kCommand, context.console, scoreText(outcome.table),
-         [&] { return scoreJson(outcome.table, outcome.each); });
+         [&] { return scoreJson(outcome.table, outcome.each, outcome.setting_changes); });
   return 0;
 }
 
@@ -100,6 +101,7 @@ void addEvaluateCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--pictures", flags->pictures,
                       "Score the pictures that render wrote here instead of new ones");
   command->add_option("--frames", flags->frames, "Frames: 0-7, 1,5, 1-9x2 or all that are solved");
+  addStrictFlag(*command, flags->strict);
   addAnswerFlags(*command, flags->answer);
   addDeviceFlags(*command, flags->device);
   command->callback(

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/cli/commands.h"
+#include "app/cli/run_flags.h"
 #include "core/base/error.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/scene/channel.h"
@@ -16,9 +17,9 @@ namespace beam {
 namespace {
 
 struct RenderFlags {
-  std::string project, cameras = "test", frames = "all", environment, frame_of = "capture", out;
-  std::vector<std::string> channels = {"rgb"};
-  bool force = false;
+  std::string project, channels = "rgb", cameras = "test", frames = "all", environment;
+  std::string frame_of = "capture", out;
+  bool force = false, strict = false;
   DeviceChoice device;
 };
 
@@ -33,22 +34,33 @@ void tellInterpolated(const std::vector<std::string>& names, Console& console) {
     console.print(fmt::format("interpolated, not solved: frames {}", fmt::join(names, ", ")));
 }
 
+// With commas, blanks around them; the last time the flag is typed holds.
+std::vector<std::string> channelsIn(const std::string& list) {
+  std::vector<std::string> ids = splitAtCommas(list);
+  if (ids.empty()) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("--channels is empty; expected some of {}", fmt::join(channelIds(), ", ")));
+  }
+  return ids;
+}
+
 int runRender(const RenderFlags& flags, CommandContext& context) {
   RenderFramesRequest request{.project = Project::open(flags.project, context.services.pipeline),
-                              .channels = flags.channels,
+                              .channels = channelsIn(flags.channels),
                               .cameras = flags.cameras,
                               .frames = flags.frames,
                               .environments = {},
                               .world_frame = wantsWorld(flags.frame_of),
                               .out = flags.out,
-                              .force = flags.force};
+                              .force = flags.force,
+                              .strict = flags.strict};
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
   const RenderFramesOutcome outcome = renderFrames(request, *newCpuSceneRenderer(*device), progress);
   context.console.endProgress();
   context.console.print(fmt::format(
-      "wrote {} of {} camera{} and {} frame{} to \"{}\"", fmt::join(flags.channels, ", "), outcome.cameras,
+      "wrote {} of {} camera{} and {} frame{} to \"{}\"", fmt::join(request.channels, ", "), outcome.cameras,
       outcome.cameras == 1 ? "" : "s", outcome.frames, outcome.frames == 1 ? "" : "s", flags.out));
   tellInterpolated(outcome.interpolated, context.console);
   return 0;
@@ -56,7 +68,7 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
 
 struct ExportFlags {
   std::string project, format = "ply", out, frames = "all", frame_of = "capture";
-  bool force = false;
+  bool force = false, strict = false;
 };
 
 int runExport(const ExportFlags& flags, CommandContext& context) {
@@ -65,7 +77,8 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
                               wantsWorld(flags.frame_of),
                               flags.out,
                               flags.format,
-                              flags.force};
+                              flags.force,
+                              flags.strict};
   Progress progress(context.stop, context.console.listener());
   const ExportOutcome outcome = exportFrames(request, progress);
   context.console.endProgress();
@@ -89,13 +102,15 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       app.add_subcommand("render", "Write pictures of solved frames: colour, materials, geometry, relit");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
   command->add_option("--channels", flags->channels, fmt::format("Some of {}", fmt::join(channelIds(), ", ")))
-      ->delimiter(',');
-  command->add_option("--cameras", flags->cameras, "test, train, all or camera names");
+      ->type_name("A,B");
+  command->add_option("--cameras", flags->cameras,
+                      "test, train, all, names and patterns (cam0*) with commas");
   command->add_option("--frames", flags->frames,
                       "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");
   command->add_option("--environment", flags->environment, "Panorama for the channel relight");
   command->add_option("--frame-of", flags->frame_of, "Axes of normals and meshes: capture or world");
   command->add_option("--out", flags->out, "Folder for the pictures")->required();
+  addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
   command->callback(
@@ -111,6 +126,7 @@ void addExportCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--frames", flags->frames,
                       "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");
   command->add_option("--frame-of", flags->frame_of, "Axes: capture or world");
+  addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runExport(*flags, context); }; });

@@ -13,13 +13,13 @@ namespace {
 
 struct ReportFlags {
   std::string project, out;
-  bool force = false;
+  bool force = false, strict = false;
   DeviceChoice device;
 };
 
 int runReport(const ReportFlags& flags, CommandContext& context) {
-  const ReportRequest request{Project::open(flags.project, context.services.pipeline), flags.out,
-                              flags.force};
+  const ReportRequest request{Project::open(flags.project, context.services.pipeline), flags.out, flags.force,
+                              flags.strict};
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
   const ReportOutcome outcome = report(request, *device, progress);
@@ -38,6 +38,7 @@ void addReportCommand(CLI::App& app, CommandContext& context) {
       app.add_subcommand("report", "Write the quality of a project over time as one HTML page");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
   command->add_option("--out", flags->out, "The page to write")->required();
+  addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
   command->callback(

@@ -9,6 +9,10 @@ void addForceFlag(CLI::App& command, bool& force) {
   command.add_flag("--force", force, "Replace files that this command did not write");
 }
 
+void addStrictFlag(CLI::App& command, bool& strict) {
+  command.add_flag("--strict", strict, "Refuse results of other settings than those in force");
+}
+
 void addDeviceFlags(CLI::App& command, DeviceChoice& choice) {
   command.add_option("--threads", choice.threads, "Threads to compute with; 0: all of the machine")
       ->check(CLI::Range(0, 4096));

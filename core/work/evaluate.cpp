@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/io/file.h"
@@ -15,6 +16,7 @@
 #include "core/stages/render_channels.h"
 #include "core/work/evaluate_over_time.h"
 #include "core/work/ground_truth.h"
+#include "core/work/last_solved.h"
 #include "core/work/selection.h"
 
 namespace beam {
@@ -150,17 +152,27 @@ bool hasHeldOutPhotographs(const CaptureSet& capture) {
 }
 
 EvaluateOutcome evaluate(const EvaluateRequest& request, ComputeDevice& device, Progress& progress) {
-  EvaluateOutcome outcome = request.ground_truth.empty() ? scoreHeldOut(request, device, progress)
-                                                         : scoreAgainstTruth(request, device, progress);
+  EvaluateRequest solved = request;
+  std::vector<std::string> changes;
+  if (request.pictures.empty()) {
+    const WantedResults wanted{.frames = request.frames, .strict = request.strict};
+    LastSolved last = lastSolved(request.project, wanted, progress);
+    solved.project = std::move(last.project);
+    changes = std::move(last.changes);
+  }
+  EvaluateOutcome outcome = request.ground_truth.empty() ? scoreHeldOut(solved, device, progress)
+                                                         : scoreAgainstTruth(solved, device, progress);
   for (auto& row : motionTable(outcome.each)) outcome.table.push_back(std::move(row));
+  outcome.setting_changes = std::move(changes);
   return outcome;
 }
 
 void keepEvaluation(const Project& project, const EvaluateOutcome& outcome) {
   if (project.readOnly()) return;
-  writeFileAtomically(project.folder() / kEvaluationFile, scoreJson(outcome.table) + "\n");
+  writeFileAtomically(project.folder() / kEvaluationFile,
+                      scoreJson(outcome.table, outcome.setting_changes) + "\n");
   writeFileAtomically(project.folder() / kEvaluationFramesFile,
-                      scoreJson(outcome.table, outcome.each) + "\n");
+                      scoreJson(outcome.table, outcome.each, outcome.setting_changes) + "\n");
 }
 
 }  // namespace beam

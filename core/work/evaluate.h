@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/pipeline/project.h"
@@ -23,11 +24,14 @@ struct EvaluateRequest {
   std::filesystem::path ground_truth;
   // Folder of renderChannels whose pictures are scored against the ground truth; empty: new ones are drawn.
   std::filesystem::path pictures;
+  bool strict = false;  // of WantedResults
 };
 
 struct EvaluateOutcome {
   ScoreTable table;    // means
   PictureScores each;  // every picture's and frame's own
+  // From the settings that the frames were solved with to those in force; empty: they are the same.
+  std::vector<std::string> setting_changes = {};
 };
 
 // Writes nothing. Throws Error{Usage} for words that choose nothing, Error{Data} when a frame is not solved,

@@ -12,6 +12,7 @@
 #include "core/pipeline/output_target.h"
 #include "core/scene/transform.h"
 #include "core/stages/project_sequence.h"
+#include "core/work/last_solved.h"
 #include "core/work/selection.h"
 
 namespace beam {
@@ -88,7 +89,9 @@ const std::vector<ExportFormat>& exportFormats() {
 
 ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   const Format& format = formatOf(request.format);
-  const auto sequence = sequenceOf(request.project, Shows::Between);
+  const WantedResults wanted{.frames = request.frames, .between = true, .strict = request.strict};
+  const Project project = lastSolved(request.project, wanted, progress).project;
+  const auto sequence = sequenceOf(project, Shows::Between);
   const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
   const Similarity3 capture_from_world = sequence->captureFromWorld();
   if (const std::string lost = roundingWarning(capture_from_world); !request.world_frame && !lost.empty())

@@ -26,6 +26,7 @@ struct ExportRequest {
   std::filesystem::path out;   // a folder; made when it is not there
   std::string format = "ply";  // of exportFormats()
   bool force = false;          // of OutputRule
+  bool strict = false;         // of WantedResults
 };
 
 struct ExportOutcome {

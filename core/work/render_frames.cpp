@@ -3,8 +3,10 @@
 
 #include "core/io/written_by.h"
 #include "core/pipeline/output_target.h"
+#include "core/scene/channel.h"
 #include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
+#include "core/work/last_solved.h"
 #include "core/work/selection.h"
 
 namespace beam {
@@ -12,14 +14,25 @@ namespace {
 
 constexpr const char* kCommand = "render";
 
+WantedResults wantedOf(const RenderFramesRequest& request) {
+  WantedResults wanted{.frames = request.frames, .between = true, .strict = request.strict};
+  for (const std::string& id : request.channels) {
+    const ChannelInfo& channel = channelOf(id);
+    wanted.materials |= needsMaterials(channel);
+    wanted.mesh |= channel.needs == ChannelNeeds::Mesh;
+  }
+  return wanted;
+}
+
 }  // namespace
 
 RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRenderer& renderer,
                                  Progress& progress) {
-  const auto sequence = sequenceOf(request.project, Shows::Between);
+  const Project project = lastSolved(request.project, wantedOf(request), progress).project;
+  const auto sequence = sequenceOf(project, Shows::Between);
   RenderRequest pictures;
   pictures.channels = request.channels;
-  pictures.views = selectViews(request.cameras, request.project.capture());
+  pictures.views = selectViews(request.cameras, project.capture());
   pictures.frames = selectSolvedFrames(request.frames, *sequence, progress);
   pictures.environments = request.environments;
   pictures.world_frame = request.world_frame;

@@ -20,7 +20,8 @@ struct RenderFramesRequest {
   std::vector<std::filesystem::path> environments;  // for "relight"
   bool world_frame = false;  // normals, depth and meshes in world axes and metres instead of the capture's
   std::filesystem::path out;
-  bool force = false;  // of OutputRule
+  bool force = false;   // of OutputRule
+  bool strict = false;  // of WantedResults
 };
 
 struct RenderFramesOutcome {

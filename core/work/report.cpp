@@ -14,6 +14,7 @@
 #include "core/pipeline/version.h"
 #include "core/stages/project_sequence.h"
 #include "core/work/evaluate_over_time.h"
+#include "core/work/last_solved.h"
 #include "core/work/report_page.h"
 
 namespace beam {
@@ -143,8 +144,9 @@ std::vector<std::string> findingsOf(const QualityHistory& history) {
 }  // namespace
 
 ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progress& progress) {
-  const Project& project = request.project;
   requireFileTarget(request.out, {kReportCommand, request.force});
+  const LastSolved last = lastSolved(request.project, {.strict = request.strict}, progress);
+  const Project& project = last.project;
   const auto sequence = sequenceOf(project, Shows::Solved);
   ReportPage page{
       project.name(), kProgramVersion, factsOf(project), {}, sequence->frames().size(), {}, {}, {}};
@@ -153,6 +155,11 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
     throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
                                                project.folder().string()));
   }
+  if (!last.changes.empty())
+    page.facts.emplace_back("Of other settings",
+                            fmt::format("these results are not of the settings in force; "
+                                        "since they were made: {}",
+                                        fmt::join(last.changes, ", ")));
   for (const auto& [key, value] : project.document().settings) page.settings.emplace_back(key, toText(value));
   addEvaluatedFrames(project, page.history);
   {

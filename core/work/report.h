@@ -16,6 +16,7 @@ struct ReportRequest {
   Project project;
   std::filesystem::path out;  // the page
   bool force = false;         // of OutputRule
+  bool strict = false;        // of WantedResults
 };
 
 struct ReportOutcome {

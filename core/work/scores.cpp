@@ -8,8 +8,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json tableJson(const ScoreTable& table) {
+Json tableJson(const ScoreTable& table, const std::vector<std::string>& setting_changes) {
   Json j = Json::object();
+  if (!setting_changes.empty()) j["setting_changes"] = setting_changes;
   for (const auto& [name, scores] : table) {
     for (const auto& [key, value] : scores) j[name][key] = value;
   }
@@ -61,10 +62,13 @@ Scores meanOfCameras(const std::map<std::string, Scores>& cameras) {
   return mean;
 }
 
-std::string scoreJson(const ScoreTable& table) { return tableJson(table).dump(1); }
+std::string scoreJson(const ScoreTable& table, const std::vector<std::string>& setting_changes) {
+  return tableJson(table, setting_changes).dump(1);
+}
 
-std::string scoreJson(const ScoreTable& table, const PictureScores& each) {
-  Json j = tableJson(table);
+std::string scoreJson(const ScoreTable& table, const PictureScores& each,
+                      const std::vector<std::string>& setting_changes) {
+  Json j = tableJson(table, setting_changes);
   Json frames = Json::object();
   for (const auto& [frame, cameras] : each) {
     frames[frame]["scores"] = meanOfCameras(cameras);

@@ -25,9 +25,11 @@ Better betterOf(const std::string& score);
 // Means over the cameras; scores of the whole frame as they are.
 Scores meanOfCameras(const std::map<std::string, Scores>& cameras);
 
-std::string scoreJson(const ScoreTable& table);
+// `setting_changes`: of EvaluateOutcome; a member of that name where there are some.
+std::string scoreJson(const ScoreTable& table, const std::vector<std::string>& setting_changes = {});
 // The table, and "over_time": by frame its scores (means over its cameras) and its cameras' own; "worst" by
 // score.
-std::string scoreJson(const ScoreTable& table, const PictureScores& each);
+std::string scoreJson(const ScoreTable& table, const PictureScores& each,
+                      const std::vector<std::string>& setting_changes = {});
 
 }  // namespace beam

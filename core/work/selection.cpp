@@ -2,52 +2,88 @@
 #include "core/work/selection.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cctype>
+#include <set>
 #include <sstream>
 
 #include "core/base/error.h"
 #include "core/base/fields.h"
 #include "core/scene/frame_list.h"
+#include "core/scene/name_pattern.h"
 
 namespace beam {
 
+namespace {
+
+std::vector<std::string> wordsOf(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream in(list);
+  for (std::string word; std::getline(in, word, ',');) {
+    const std::size_t first = word.find_first_not_of(" \t");
+    if (first != std::string::npos)
+      words.push_back(word.substr(first, word.find_last_not_of(" \t") - first + 1));
+  }
+  return words;
+}
+
+std::string lowerCase(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+bool isChosen(const View& view, const std::string& word) {
+  const std::string kind = lowerCase(word);
+  if (kind == "all") return true;
+  if (kind == "test" || kind == "train") return view.split == (kind == "test" ? Split::Test : Split::Train);
+  return matchesName(word, view.name);
+}
+
+[[noreturn]] void choosesNothing(const std::string& word, const CaptureSet& capture) {
+  const std::string kind = lowerCase(word);
+  if (kind == "test" || kind == "train") {
+    throw Error(Error::Kind::Usage,
+                fmt::format("--cameras {}: the project has none; hold some out with --hold-out, or "
+                            "name cameras",
+                            word));
+  }
+  std::vector<std::string> names;
+  for (const View& v : capture.views) names.push_back(v.name);
+  if (isPattern(word)) {
+    throw Error(Error::Kind::Usage, fmt::format("--cameras: no camera is like \"{}\"; the cameras are {}",
+                                                word, fmt::join(names, ", ")));
+  }
+  throw Error(Error::Kind::Usage, fmt::format("--cameras: there is no camera \"{}\"; did you mean \"{}\"?",
+                                              word, nearestName(word, names)));
+}
+
+}  // namespace
+
 std::vector<View> selectViews(const std::string& words, const CaptureSet& capture) {
   std::vector<View> chosen;
-  const auto addAll = [&](auto&& wanted) {
-    std::copy_if(capture.views.begin(), capture.views.end(), std::back_inserter(chosen), wanted);
-  };
-  if (words == "all") {
-    addAll([](const View&) { return true; });
-  } else if (words == "test" || words == "train") {
-    const Split split = words == "test" ? Split::Test : Split::Train;
-    addAll([&](const View& v) { return v.split == split; });
-    if (chosen.empty()) {
-      throw Error(Error::Kind::Usage,
-                  fmt::format("--cameras {}: the project has none; hold some out with --hold-out, or "
-                              "name cameras",
-                              words));
+  std::set<std::string> names;
+  for (const std::string& word : wordsOf(words)) {
+    bool some = false;
+    for (const View& view : capture.views) {
+      if (!isChosen(view, word)) continue;
+      some = true;
+      if (names.insert(view.name).second) chosen.push_back(view);
     }
-  } else {
-    std::istringstream in(words);
-    for (std::string name; std::getline(in, name, ',');) {
-      const std::size_t before = chosen.size();
-      addAll([&](const View& v) { return v.name == name; });
-      if (chosen.size() > before) continue;
-      std::vector<std::string> names;
-      for (const View& v : capture.views) names.push_back(v.name);
-      throw Error(Error::Kind::Usage,
-                  fmt::format("--cameras: there is no camera \"{}\"; did you mean \"{}\"?", name,
-                              nearestName(name, names)));
-    }
+    if (!some) choosesNothing(word, capture);
+  }
+  if (chosen.empty()) {
+    throw Error(Error::Kind::Usage,
+                "--cameras is empty; expected test, train, all, or names and patterns with commas");
   }
   return chosen;
 }
 
 std::vector<FrameIndex> selectSolvedFrames(const std::string& list, const GaussianSequence& sequence,
                                            const Progress& progress) {
-  if (list != "all") return parseFrameList(list, namesOf(sequence));
+  if (!isAllFrames(list)) return parseFrameList(list, namesOf(sequence));
   std::vector<FrameIndex> solved;
   for (std::size_t f = 0; f < sequence.frames().size(); ++f) {
     progress.check();

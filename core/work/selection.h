@@ -11,8 +11,8 @@
 
 namespace beam {
 
-// "test", "train", "all" or camera names with commas. Throws Error{Usage} for an unknown name or an empty
-// choice.
+// "test", "train", "all", camera names and patterns ("cam0*") in any mixture, with commas; each view once, in
+// the order of the words. Throws Error{Usage} for a word that chooses none and an empty choice.
 std::vector<View> selectViews(const std::string& words, const CaptureSet& capture);
 
 // "all": every frame with Gaussians; else a frame list. Throws Error{Data} when nothing is solved, Cancelled:

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/work/last_solved.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/pipeline/setting_changes.h"
+#include "core/scene/frame_list.h"
+#include "core/stages/project_sequence.h"
+#include "core/stages/step_ids.h"
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kMostNamed = 4;
+
+// What the settings of a project solve of what is wanted.
+struct Solved {
+  bool enough = false;
+  std::optional<FrameIndex> first;  // of the frames that are solved
+  bool materials = false;           // of `first`
+};
+
+std::vector<FrameIndex> framesIn(const Project& project, const std::string& list) {
+  return parseFrameList(list, project.capture().frames);
+}
+
+Solved solvedOf(const Project& project, const WantedResults& wanted, const Progress& progress) {
+  const auto sequence = sequenceOf(project, wanted.between ? Shows::Between : Shows::Solved);
+  const bool any = isAllFrames(wanted.frames);
+  Solved solved;
+  for (const FrameIndex frame : framesIn(project, wanted.frames)) {
+    progress.check();
+    const FrameContent content = sequence->content(frame);
+    const bool enough =
+        content.gaussians && (content.materials || !wanted.materials) && (content.mesh || !wanted.mesh);
+    if (!enough && any) continue;
+    if (!enough) return {};
+    solved.enough = true;
+    if (!solved.first) solved.first = frame, solved.materials = content.materials;
+    if (any) break;
+  }
+  return solved;
+}
+
+// Throws Error for a pipeline without surfaces.
+bool onSameSurface(const Project& a, const Project& b, FrameIndex frame) {
+  return a.key(kRefineStep, frame) == b.key(kRefineStep, frame);
+}
+
+// The last settings that solve what is wanted, better than those in force, which solve `now` of it.
+std::optional<Project> lastThatSolves(const Project& project, const WantedResults& wanted, const Solved& now,
+                                      const Progress& progress) {
+  for (const Project& earlier : earlierVersions(project)) {
+    progress.check();
+    try {
+      const Solved then = solvedOf(earlier, wanted, progress);
+      if (!then.enough) continue;
+      if (!now.enough || (then.materials && onSameSurface(project, earlier, *now.first))) return earlier;
+    } catch (const Error& e) {
+      logDebug("settings of the history of \"{}\" are passed over: {}", project.folder().string(), e.what());
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string changesText(const std::vector<std::string>& changes) {
+  if (changes.size() <= kMostNamed) return fmt::format("{}", fmt::join(changes, ", "));
+  const std::vector<std::string> named(changes.begin(), changes.begin() + kMostNamed);
+  return fmt::format("{} and {} more", fmt::join(named, ", "), changes.size() - kMostNamed);
+}
+
+LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
+  if (project.withoutCapture()) return {project, {}};
+  const Solved now = solvedOf(project, wanted, progress);
+  if (now.enough && now.materials) return {project, {}};
+  const std::optional<Project> found = lastThatSolves(project, wanted, now, progress);
+  if (!found) return {project, {}};
+  const std::vector<std::string> changes = settingChanges(*found, project);
+  const std::string told = changes.empty() ? "other takes" : changesText(changes);
+  if (wanted.strict && now.enough) return {project, {}};
+  if (wanted.strict) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\": what is wanted is not solved with the settings in force, only before "
+                            "they changed ({}): beam run it, or leave out --strict",
+                            project.folder().string(), told));
+  }
+  logWarning(
+      "\"{}\": the results are those of other settings than are in force ({}): beam run it to solve "
+      "the frames anew; --strict refuses",
+      project.folder().string(), told);
+  return {*found, changes.empty() ? std::vector<std::string>{told} : changes};
+}
+
+}  // namespace beam

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which settings the frames of a project are taken from when it is drawn, written or scored: those in force
+// where they are solved as far as it needs; else, all of them from one, the last ones that were.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/pipeline/project.h"
+
+namespace beam {
+
+struct WantedResults {
+  std::string frames = "all";  // of selectSolvedFrames: any frame is enough for "all", of a list each
+  bool between = false;        // frames between those of a scout count as solved
+  bool materials = false, mesh = false;
+  bool strict = false;  // nothing but the settings in force
+};
+
+struct LastSolved {
+  Project project;                   // with the settings that the frames are taken from; never to be saved
+  std::vector<std::string> changes;  // settingChanges from these to those in force; empty: they are the same
+};
+
+// Says a warning that names what changed. Gives the project as it is where no settings in its history solved
+// what is wanted, or it is looked at without its capture. Of frames in force without materials it takes those
+// of other settings only on the same surface. Throws Error{Data} where `strict` alone refuses, Error{Usage}
+// for frames that the capture does not have, Cancelled.
+LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress);
+
+// "surface.iterations 900 → 500; 3 more changes": one line of any number.
+std::string changesText(const std::vector<std::string>& changes);
+
+}  // namespace beam
