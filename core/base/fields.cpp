@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/field_text.h"
@@ -47,6 +48,22 @@ double asDouble(const FieldInfo& info, const FieldValue& value) {
   if (const double* d = std::get_if<double>(&value)) return *d;
   if (const int* i = std::get_if<int>(&value)) return *i;
   refuse(info, FieldValue(0.0), toText(value));
+}
+
+// Letters put in, left out, changed, or changed places with the next (optimal string alignment).
+std::size_t editDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before, above, row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before = std::exchange(above, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
 }
 
 }  // namespace
@@ -123,26 +140,23 @@ std::string toText(const FieldValue& value) {
 }
 
 std::string nearestName(std::string_view name, const std::vector<std::string>& known) {
-  const auto distance = [](std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j <= b.size(); ++j) {
-        const std::size_t above = row[j];
-        row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-        diagonal = above;
-      }
-    }
-    return row[b.size()];
-  };
-  std::string best;
-  std::size_t bestDistance = std::string::npos;
-  for (const std::string& k : known) {
-    if (const std::size_t d = distance(name, k); d < bestDistance) best = k, bestDistance = d;
-  }
-  return best;
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+    return editDistance(name, a) < editDistance(name, b);
+  });
+  return nearest == known.end() ? std::string() : *nearest;
+}
+
+std::optional<std::string> similarName(std::string_view name, const std::vector<std::string>& known) {
+  const std::string nearest = nearestName(name, known);
+  if (nearest.empty() || editDistance(name, nearest) > std::max<std::size_t>(1, name.size() / 3)) return {};
+  return nearest;
+}
+
+std::string noSuchName(std::string_view kind, std::string_view name, const std::vector<std::string>& known,
+                       std::string_view where) {
+  const std::optional<std::string> similar = similarName(name, known);
+  return fmt::format("there is no {} \"{}\"; {}", kind, name,
+                     similar ? fmt::format("did you mean \"{}\"?", *similar) : std::string(where));
 }
 
 }  // namespace beam

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -93,8 +94,17 @@ void checkRange(const FieldInfo& info, const FieldValue& value);
 // "true", "7000", "0.03" (shortest round trip), "text".
 std::string toText(const FieldValue& value);
 
-// The known name nearest to `name` by edit distance; empty when `known` is.
+// The known name nearest to `name` by edit distance, in which two letters that changed places count once;
+// empty when `known` is.
 std::string nearestName(std::string_view name, const std::vector<std::string>& known);
+
+// Likewise, where it may be what was meant: at most max(1, a third of the letters) apart.
+std::optional<std::string> similarName(std::string_view name, const std::vector<std::string>& known);
+
+// "there is no camera \"cam0\"; did you mean \"cam00\"?", and where none is similar
+// "there is no camera \"door\"; " and `where`, which says where the known ones are found.
+std::string noSuchName(std::string_view kind, std::string_view name, const std::vector<std::string>& known,
+                       std::string_view where);
 
 template <class Options>
 std::vector<Field> fieldsOf(const Options& options) {

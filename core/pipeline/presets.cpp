@@ -31,8 +31,7 @@ std::map<std::string, FieldValue> loadPreset(const std::filesystem::path& folder
   const std::vector<std::string> known = presetNamesIn(folder);
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     throw Error(Error::Kind::Usage,
-                fmt::format("there is no preset \"{}\"; the nearest is \"{}\" (presets: {})", name,
-                            nearestName(name, known), fmt::join(known, ", ")));
+                noSuchName("preset", name, known, fmt::format("there are {}", fmt::join(known, ", "))));
   }
   const std::filesystem::path file = folder / (name + ".json");
   std::map<std::string, FieldValue> values;

@@ -139,8 +139,7 @@ FieldValue Project::value(std::string_view key) const {
     if (field.info.name == key) return field.value;
     names.push_back(field.info.name);
   }
-  throw Error(Error::Kind::Usage,
-              fmt::format("there is no setting \"{}\"; the nearest is \"{}\"", key, nearestName(key, names)));
+  throw Error(Error::Kind::Usage, noSuchName("setting", key, names, "beam stages lists them"));
 }
 
 FieldValue Project::presetValue(std::string_view key) const {

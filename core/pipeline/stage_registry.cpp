@@ -62,8 +62,7 @@ std::size_t StageRegistry::indexOf(std::string_view stage) const {
   for (const StageInfo& info : infos_) known.push_back(info.id);
   const auto found = std::find(known.begin(), known.end(), stage);
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
-  throw Error(Error::Kind::Usage, fmt::format("there is no stage \"{}\"; the nearest is \"{}\" (stages: {})",
-                                              stage, nearestName(stage, known), fmt::join(known, ", ")));
+  throw Error(Error::Kind::Usage, noSuchName("stage", stage, known, "beam stages lists them"));
 }
 
 std::unique_ptr<Stage> StageRegistry::make(std::string_view stage) const { return makers_[indexOf(stage)](); }

@@ -205,8 +205,8 @@ void setField(Look& look, const std::string& path, const FieldValue& value) {
   if (setter.found) return;
   std::vector<std::string> names;
   for (const Field& field : fieldsOf(look)) names.push_back(field.info.name);
-  throw Error(Error::Kind::Usage,
-              fmt::format("a look has no \"{}\"; the nearest is \"{}\"", path, nearestName(path, names)));
+  throw Error(Error::Kind::Usage, noSuchName("setting of a look", path, names,
+                                             fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
 }  // namespace beam

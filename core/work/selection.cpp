@@ -56,8 +56,8 @@ bool isChosen(const View& view, const std::string& word) {
     throw Error(Error::Kind::Usage, fmt::format("--cameras: no camera is like \"{}\"; the cameras are {}",
                                                 word, fmt::join(names, ", ")));
   }
-  throw Error(Error::Kind::Usage, fmt::format("--cameras: there is no camera \"{}\"; did you mean \"{}\"?",
-                                              word, nearestName(word, names)));
+  throw Error(Error::Kind::Usage,
+              fmt::format("--cameras: {}", noSuchName("camera", word, names, "beam check lists them")));
 }
 
 }  // namespace

@@ -86,6 +86,24 @@ TEST(Fields, TheNearestNameIsFoundForATypingError) {
   EXPECT_EQ(nearestName("itertions", {"cap", "iterations", "seed"}), "iterations");
 }
 
+TEST(Fields, ANameIsSimilarUpToAThirdOfItsLettersAndLettersThatChangedPlacesCountOnce) {
+  const std::vector<std::string> known = {"run", "render", "report"};
+  EXPECT_EQ(similarName("rnu", known), "run");
+  EXPECT_EQ(similarName("ru", known), "run");
+  EXPECT_EQ(similarName("rendre", known), "render");
+  EXPECT_EQ(similarName("rapprt", known), "report");
+  EXPECT_EQ(similarName("rx", known), std::nullopt);
+  EXPECT_EQ(similarName("frobnicate", known), std::nullopt);
+  EXPECT_EQ(similarName("run", {}), std::nullopt);
+}
+
+TEST(Fields, AnUnknownNameIsToldWithASimilarOneOrWhereToLook) {
+  EXPECT_EQ(noSuchName("setting", "itertions", {"cap", "iterations"}, "beam stages lists them"),
+            "there is no setting \"itertions\"; did you mean \"iterations\"?");
+  EXPECT_EQ(noSuchName("setting", "colour", {"cap", "iterations"}, "beam stages lists them"),
+            "there is no setting \"colour\"; beam stages lists them");
+}
+
 TEST(Fields, JsonHoldsEveryValue) {
   const std::string json = fieldsToJson(fieldsOf(Options{}));
   EXPECT_THAT(json, ::testing::HasSubstr("\"inner.weight\": 0.5"));
