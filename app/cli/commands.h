@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <stop_token>
+#include <string>
 
 #include "app/cli/console.h"
 #include "app/services.h"
@@ -34,9 +35,14 @@ void addStrictFlag(CLI::App& command, bool& strict);
 // --threads N, --simd auto|avx512|avx2|scalar, --device cpu: for every command that computes.
 void addDeviceFlags(CLI::App& command, DeviceChoice& choice);
 
+// "beam 0.1.0"; verbose: also what it computes with.
+std::string versionWords(const Services& services, bool verbose);
+
 void addCheckCommand(CLI::App& app, CommandContext& context);
+void addCompletionCommand(CLI::App& app, CommandContext& context);
 void addEvaluateCommand(CLI::App& app, CommandContext& context);
 void addExportCommand(CLI::App& app, CommandContext& context);
+void addHelpCommand(CLI::App& app, CommandContext& context);  // after those it explains
 void addNewCommand(CLI::App& app, CommandContext& context);
 void addProcessCommand(CLI::App& app, CommandContext& context);
 void addRenderCommand(CLI::App& app, CommandContext& context);
@@ -45,5 +51,6 @@ void addRunCommand(CLI::App& app, CommandContext& context);
 void addSampleCommand(CLI::App& app, CommandContext& context);
 void addStagesCommand(CLI::App& app, CommandContext& context);
 void addStatusCommand(CLI::App& app, CommandContext& context);
+void addVersionCommand(CLI::App& app, CommandContext& context);
 
 }  // namespace beam

@@ -97,10 +97,16 @@ void addEvaluateCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("evaluate", "Score a project against ground truth, or its held-out photographs");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command->add_option("--ground-truth", flags->truth, "Data set folder with dataset.json and gt/");
-  command->add_option("--pictures", flags->pictures,
-                      "Score the pictures that render wrote here instead of new ones");
-  command->add_option("--frames", flags->frames, "Frames: 0-7, 1,5, 1-9x2 or all that are solved");
+  command->add_option("--ground-truth", flags->truth, "Data set folder with dataset.json and gt/")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--pictures", flags->pictures,
+                   "Score the pictures that render wrote here instead of new ones")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--frames", flags->frames,
+                   "Frames such as 0-7, or all that are solved; see beam help frames")
+      ->type_name("LIST");
   addStrictFlag(*command, flags->strict);
   addAnswerFlags(*command, flags->answer);
   addDeviceFlags(*command, flags->device);

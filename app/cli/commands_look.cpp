@@ -47,14 +47,14 @@ int runCheck(const CheckFlags& flags, Console& console) {
 }
 
 struct SampleFlags {
-  std::string folder, size;
+  std::string folder;
   std::vector<std::string> defects;
   SampleOptions options;
+  std::string size = fmt::format("{}x{}", options.width, options.height);
   DeviceChoice device;
 };
 
 void applySize(const std::string& size, SampleOptions& options) {
-  if (size.empty()) return;
   const std::size_t x = size.find('x');
   int width = 0, height = 0;
   if (x != std::string::npos) {
@@ -79,7 +79,7 @@ void addCheckCommand(CLI::App& app, CommandContext& context) {
       ->required();
   addAnswerFlags(*command, flags->answer);
   command->add_flag("--strict", flags->strict, "End with 65 when there is a warning");
-  command->add_option("--up", flags->up, "Up axis of the capture: +Y, +Z or -Y");
+  command->add_option("--up", flags->up, "Up axis of the capture: +Y, +Z or -Y")->type_name("AXIS");
   command->add_option("--unit", flags->unit, kUnitHelp)->type_name("m|cm|mm|NUMBER");
   command->add_option("--hold-out", flags->hold_out, kHoldOutHelp)->type_name("N|NAMES");
   command->callback([flags, &context] {
@@ -91,15 +91,27 @@ void addSampleCommand(CLI::App& app, CommandContext& context) {
   auto flags = std::make_shared<SampleFlags>();
   CLI::App* command = app.add_subcommand("sample", "Make a synthetic dome capture with full ground truth");
   command->add_option("FOLDER", flags->folder, "Where it is written; must not exist or be empty")->required();
-  command->add_option("--frames", flags->options.frames, "Frames")->check(CLI::Range(1, 10000));
-  command->add_option("--cameras", flags->options.cameras, "Training cameras")->check(CLI::Range(2, 200));
-  command->add_option("--size", flags->size, "Picture size, WIDTHxHEIGHT");
-  command->add_option("--samples", flags->options.samples, "Light paths a pixel")->check(CLI::Range(1, 4096));
+  command
+      ->add_option("--frames", flags->options.frames,
+                   "Number of frames, 30 a second; from two on the figure moves")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000));
+  command
+      ->add_option("--cameras", flags->options.cameras,
+                   "Number of training cameras; two test cameras join them")
+      ->type_name("N")
+      ->check(CLI::Range(2, 200));
+  command->add_option("--size", flags->size, "Size of the pictures, in pixels of 16 to 8192")
+      ->type_name("WxH");
+  command->add_option("--samples", flags->options.samples, "Light paths a pixel")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
   command
       ->add_option(
           "--defect", flags->defects,
           "Faults of a camera, KIND or KIND:CAMERA: dropped (every fourth frame is missing), late (by "
           "three frames), blurred, black (the middle frame)")
+      ->type_name("KIND")
       ->delimiter(',');
   addDeviceFlags(*command, flags->device);
   command->callback([flags, &context] {

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "app/cli/commands.h"
-#include "app/cli/run_flags.h"
 #include "core/base/error.h"
+#include "core/base/word_list.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/scene/channel.h"
 #include "core/work/export_frames.h"
@@ -15,6 +15,9 @@
 
 namespace beam {
 namespace {
+
+constexpr const char* kSolvedFramesHelp =
+    "Frames such as 0-7, or all that are solved or between those of a scout run; see beam help frames";
 
 struct RenderFlags {
   std::string project, channels = "rgb", cameras = "test", frames = "all", environment;
@@ -101,15 +104,21 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("render", "Write pictures of solved frames: colour, materials, geometry, relit");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command->add_option("--channels", flags->channels, fmt::format("Some of {}", fmt::join(channelIds(), ", ")))
-      ->type_name("A,B");
-  command->add_option("--cameras", flags->cameras,
-                      "test, train, all, names and patterns (cam0*) with commas");
-  command->add_option("--frames", flags->frames,
-                      "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");
-  command->add_option("--environment", flags->environment, "Panorama for the channel relight");
-  command->add_option("--frame-of", flags->frame_of, "Axes of normals and meshes: capture or world");
-  command->add_option("--out", flags->out, "Folder for the pictures")->required();
+  command->add_option("--channels", flags->channels, "What the pictures show; see beam help files")
+      ->type_name("NAME");
+  command->add_option("--cameras", flags->cameras, "test, train, all, names or patterns; see beam help frames")
+      ->type_name("LIST");
+  command->add_option("--frames", flags->frames, kSolvedFramesHelp)->type_name("LIST");
+  command
+      ->add_option("--environment", flags->environment,
+                   "Panorama (.exr, .hdr) for the channel relight; see beam help environment")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--frame-of", flags->frame_of,
+          "Axes and unit of normals, depth and meshes: the capture's, or the world's (+Y up, metres)")
+      ->type_name("NAME");
+  command->add_option("--out", flags->out, "Folder for the pictures")->required()->type_name("FOLDER");
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
@@ -121,11 +130,13 @@ void addExportCommand(CLI::App& app, CommandContext& context) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand("export", "Write solved frames for other programs");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command->add_option("--format", flags->format, formatHelp());
-  command->add_option("--out", flags->out, "Folder for the files")->required();
-  command->add_option("--frames", flags->frames,
-                      "Frames: 0-7, 1,5, 1-9x2 or all that are solved or between those of a scout run");
-  command->add_option("--frame-of", flags->frame_of, "Axes: capture or world");
+  command->add_option("--format", flags->format, formatHelp())->type_name("NAME");
+  command->add_option("--out", flags->out, "Folder for the files")->required()->type_name("FOLDER");
+  command->add_option("--frames", flags->frames, kSolvedFramesHelp)->type_name("LIST");
+  command
+      ->add_option("--frame-of", flags->frame_of,
+                   "Axes and unit: the capture's, or the world's (+Y up, metres)")
+      ->type_name("NAME");
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   command->callback(

@@ -87,7 +87,7 @@ void addProcessCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("process", "Import a capture and run what is missing; resumes");
   auto a = std::make_shared<ProcessArguments>();
   command->add_option("CAPTURE", a->capture, "Folder of the capture; it is only read")->required();
-  command->add_option("--out", a->project, "Project folder, Name.beam")->required()->type_name("P.beam");
+  command->add_option("--out", a->project, "Project folder, Name.beam")->required()->type_name("PROJECT");
   addProjectFlags(*command, a->project_flags);
   addRunFlags(*command, a->run);
   command->callback([a, &context] {
@@ -109,7 +109,9 @@ void addNewCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("new", "Make a project of a capture without running anything");
   auto a = std::make_shared<ProcessArguments>();
   command->add_option("PROJECT", a->project, "Project folder, Name.beam")->required();
-  command->add_option("--capture", a->capture, "Folder of the capture; it is only read")->required();
+  command->add_option("--capture", a->capture, "Folder of the capture; it is only read")
+      ->required()
+      ->type_name("CAPTURE");
   addProjectFlags(*command, a->project_flags);
   command->callback([a, &context] {
     context.action = [a, &context] {

@@ -37,7 +37,7 @@ void addReportCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("report", "Write the quality of a project over time as one HTML page");
   command->add_option("PROJECT", flags->project, "Project folder")->required();
-  command->add_option("--out", flags->out, "The page to write")->required();
+  command->add_option("--out", flags->out, "The page to write, .html")->required()->type_name("FILE");
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);

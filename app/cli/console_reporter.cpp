@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/exit_codes.h"
 #include "core/base/duration_text.h"
 
 namespace beam {
 namespace {
-
-constexpr int kSomeFailed = 10, kInterrupted = 75;
 
 std::string nameOf(const StepRef& ref) {
   if (!ref.frame) return ref.step.text();
@@ -85,7 +84,7 @@ void ConsoleReporter::show(const JobFinished& e) {
 int exitCode(const JobFinished& finished) {
   switch (finished.outcome) {
     case JobOutcome::Done:
-      return 0;
+      return kDone;
     case JobOutcome::DoneWithFailures:
       return kSomeFailed;
     case JobOutcome::Cancelled:

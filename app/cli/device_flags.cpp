@@ -15,10 +15,11 @@ void addStrictFlag(CLI::App& command, bool& strict) {
 
 void addDeviceFlags(CLI::App& command, DeviceChoice& choice) {
   command.add_option("--threads", choice.threads, "Threads to compute with; 0: all of the machine")
+      ->type_name("N")
       ->check(CLI::Range(0, 4096));
   command.add_option("--simd", choice.simd, "Instruction set; results do not depend on it")
-      ->check(CLI::IsMember({"auto", "avx512", "avx2", "scalar"}));
-  command.add_option("--device", choice.device, "Compute device")->check(CLI::IsMember({"cpu"}));
+      ->type_name("NAME");
+  command.add_option("--device", choice.device, "Compute device")->type_name("NAME");
 }
 
 }  // namespace beam

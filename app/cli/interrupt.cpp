@@ -6,10 +6,10 @@
 #include <csignal>
 #include <ctime>
 
+#include "app/cli/exit_codes.h"
+
 namespace beam {
 namespace {
-
-constexpr int kInterrupted = 75;
 
 sigset_t handledSignals() {
   sigset_t set;

@@ -7,16 +7,17 @@
 #include <exception>
 #include <new>
 
+#include "app/cli/choices.h"
 #include "app/cli/commands.h"
+#include "app/cli/exit_codes.h"
+#include "app/cli/help_text.h"
 #include "app/cli/interrupt.h"
+#include "app/cli/parse_error.h"
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "core/io/file.h"
 
 namespace beam {
 namespace {
-
-constexpr int kUsage = 2, kInterrupted = 75, kBug = 70;
 
 void addCommands(CLI::App& app, CommandContext& context) {
   addProcessCommand(app, context);
@@ -30,6 +31,9 @@ void addCommands(CLI::App& app, CommandContext& context) {
   addEvaluateCommand(app, context);
   addReportCommand(app, context);
   addExportCommand(app, context);
+  addCompletionCommand(app, context);
+  addVersionCommand(app, context);
+  addHelpCommand(app, context);
 }
 
 // Of a flag that takes one value and is typed twice, the last holds: so that a script can add to a line.
@@ -39,13 +43,21 @@ void lastOneWins(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) lastOneWins(*command);
 }
 
-// The version; with --verbose also what it computes with.
-void printVersion(Console& console, bool verbose) {
-  console.print(fmt::format("beam {}", versionText()));
-  if (!verbose) return;
-  console.print(fmt::format("compiler: {}", __VERSION__));
-  console.print(fmt::format("device: {}", makeDevice({})->info().title));
-  console.print(fmt::format("threads: {}", threadCount()));
+struct CommonFlags {
+  bool quiet = false, version = false, verbose = false;
+};
+
+void addCommonFlags(CLI::App& app, CommonFlags& flags) {
+  app.set_help_flag("-h,--help", "Print this help");
+  app.add_flag("--quiet", flags.quiet, "No progress; warnings and errors stay");
+  app.add_flag("--verbose", flags.verbose, "Details too: reused steps, what was chosen");
+  app.add_flag("-V,--version", flags.version, "Print the version; with --verbose what it computes with");
+}
+
+// Of the command that was typed, the innermost.
+std::string typedHelp(const CLI::App& app) {
+  const std::vector<CLI::App*> typed = app.get_subcommands();
+  return typed.empty() ? helpText(app) : typedHelp(*typed.front());
 }
 
 int parseAndRun(int argc, char** argv, CommandContext& context) {
@@ -53,30 +65,24 @@ int parseAndRun(int argc, char** argv, CommandContext& context) {
   CLI::App app("BEAM Studio: multi-view video in, relightable Gaussians out", "beam");
   app.require_subcommand(0, 1);
   app.fallthrough();
-  bool quiet = false, version = false, verbose = false;
-  app.add_flag("--quiet", quiet, "No progress; warnings and errors stay");
-  app.add_flag("--verbose", verbose,
-               "Details too: reused steps, what was chosen; of --version what it computes with");
-  app.add_flag("-V,--version", version, "Print the version and exit");
+  app.option_defaults()->always_capture_default();  // the help shows them
+  CommonFlags flags;
+  addCommonFlags(app, flags);
   addCommands(app, context);
+  addChoices(app, context.services);
   lastOneWins(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return console.print(app.help()), 0;
-    throw Error(Error::Kind::Usage,
-                fmt::format("{}; see beam {}--help", e.what(),
-                            app.get_subcommands().empty() ? std::string()
-                                                          : app.get_subcommands().front()->get_name() + " "));
+    if (e.get_exit_code() == 0) return console.print(typedHelp(app)), kDone;
+    throw Error(Error::Kind::Usage, parseErrorText(app, e));
   }
-  console.setQuiet(quiet);
-  console.setVerbose(verbose);
-  if (version) return printVersion(console, verbose), 0;
-  if (!context.action) {
-    console.print(app.help());
-    return kUsage;
-  }
-  return context.action();
+  console.setQuiet(flags.quiet);
+  console.setVerbose(flags.verbose);
+  if (flags.version) return console.print(versionWords(context.services, flags.verbose)), kDone;
+  if (context.action) return context.action();
+  console.print(helpText(app));
+  return exitCode(Error::Kind::Usage);
 }
 
 int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
@@ -102,7 +108,7 @@ int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
     return exitCode(Error::Kind::OutOfMemory);
   } catch (const std::exception& e) {
     console.error(fmt::format("this is a bug of beam: {}", e.what()));
-    return kBug;
+    return exitCode(Error::Kind::Bug);
   }
 }
 

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <map>
-#include <sstream>
 
 #include "app/cli/console_reporter.h"
 #include "app/cli/json_reporter.h"
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
+#include "core/base/word_list.h"
 #include "core/io/image_file.h"
 #include "core/pipeline/machine_times.h"
 #include "core/pipeline/path_kind.h"
@@ -77,17 +78,6 @@ int tellPlan(const Project& project, const RunRequest& request, const RunFlags& 
 
 }  // namespace
 
-std::vector<std::string> splitAtCommas(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    const std::size_t first = part.find_first_not_of(" \t");
-    if (first != std::string::npos)
-      parts.push_back(part.substr(first, part.find_last_not_of(" \t") - first + 1));
-  }
-  return parts;
-}
-
 double parseUnit(const std::string& text) {
   if (const std::optional<double> unit_m = unitNamed(text)) return *unit_m;
   throw Error(
@@ -97,34 +87,43 @@ double parseUnit(const std::string& text) {
 }
 
 void addProjectFlags(CLI::App& command, ProjectFlags& flags) {
-  command.add_option("--preset", flags.preset, "draft, standard (when nothing is said) or paper");
+  command.add_option("--preset", flags.preset, "How much work is put in; a new project has standard")
+      ->type_name("NAME");
   command.add_flag("--reset", flags.reset, "Drop what was set before; with --preset the preset alone holds");
   command.add_option("--unset", flags.unset, "Take a setting back to what the preset says")
       ->type_name("KEY")
       ->allow_extra_args(false);
-  command.add_option("--set", flags.set, "A setting, e.g. --set surface.iterations=2000; see beam stages")
+  command
+      .add_option("--set", flags.set, "A setting, e.g. --set surface.iterations=2000; see beam help settings")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command
       .add_option("--environment", flags.environment,
-                  "Panorama of the light (.exr, .hdr), latitude-longitude")
+                  "Panorama of the light (.exr, .hdr), latitude-longitude; see beam help environment")
       ->type_name("FILE");
   command.add_option("--hold-out", flags.hold_out, kHoldOutHelp)->type_name("N|NAMES");
-  command.add_option("--up", flags.up, "Up axis of the capture: +Y, +Z or -Y")->type_name("AXIS");
+  command
+      .add_option("--up", flags.up,
+                  "Up axis of the capture: +Y, +Z or -Y; else its description or its cameras tell")
+      ->type_name("AXIS");
   command.add_option("--unit", flags.unit, kUnitHelp)->type_name("m|cm|mm|NUMBER");
 }
 
 void addRunFlags(CLI::App& command, RunFlags& flags) {
-  command.add_option("--stage", flags.stage, "Only this stage and what it needs");
-  command.add_option("--until", flags.until, "The last stage to run")->excludes("--stage");
+  command.add_option("--stage", flags.stage, "Only this stage and what it needs")->type_name("STAGE");
+  command.add_option("--until", flags.until, "The last stage to run")
+      ->excludes("--stage")
+      ->type_name("STAGE");
   command
-      .add_option("--frames", flags.frames,
-                  "Frames: 0-7, 1,5, 1-9x2 or all; consecutive ones are solved as a take of their own")
+      .add_option(
+          "--frames", flags.frames,
+          "Frames such as 0-7; consecutive ones are solved as a take of their own; see beam help frames")
       ->type_name("LIST");
   command
       .add_option("--every", flags.every,
                   "Only every Kth frame, each built on the one K before; steps run for these frames alone")
-      ->type_name("K");
+      ->type_name("K")
+      ->check(CLI::Range(1, std::numeric_limits<int>::max()));
   command.add_flag("--dry-run", flags.dry_run,
                    "Say what would be computed and about how long it takes, and change nothing");
   command.add_flag("--json", flags.json,
@@ -138,7 +137,7 @@ std::vector<std::string> parseHoldOut(const std::string& text) {
     throw Error(Error::Kind::Usage,
                 "--hold-out is empty; expected camera names, every how many (8), or none for no camera");
   }
-  if (names.size() == 1 && (names.front() == "none" || names.front() == "NONE")) return {};
+  if (names.size() == 1 && (lowerCase(names.front()) == "none")) return {};
   return names;
 }
 

@@ -27,13 +27,9 @@ struct RunFlags {
   DeviceChoice device;
 };
 
-// The words of a list without the blanks around them; none that are empty.
-std::vector<std::string> splitAtCommas(const std::string& text);
-
 inline constexpr const char* kUnitHelp =
-    "Unit of the capture: m, cm, mm, inch, foot or metres a unit; else its description or the subject's "
-    "height "
-    "tells";
+    "Unit of the capture: m, cm, mm, inch, foot or how many metres one is; else its description or the "
+    "subject's height tells";
 inline constexpr const char* kHoldOutHelp =
     "Cameras kept for testing: N (every Nth), names and patterns (cam0*) with commas, or none";
 // Metres a unit; throws Error{Usage}.

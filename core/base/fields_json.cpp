@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/word_list.h"
 
 namespace beam {
 
@@ -33,9 +32,7 @@ FieldValue parseFieldValue(std::string_view text) {
 
 FieldValue parseFieldValue(std::string_view text, const FieldValue& like) {
   if (std::holds_alternative<bool>(like)) {
-    std::string word(text);
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string word = lowerCase(text);
     if (word == "true" || word == "yes" || word == "on" || word == "1") return true;
     if (word == "false" || word == "no" || word == "off" || word == "0") return false;
     return parseFieldValue(text);

@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
 #include "core/base/error.h"
+#include "core/base/word_list.h"
 #include "core/io/capture_reader.h"
 #include "core/pipeline/project.h"
 
@@ -16,9 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string fileInWords(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lowerCase(path.extension().string());
   if (extension == ".exr" || extension == ".hdr")
     return fmt::format("is a picture, a panorama perhaps: see beam check \"{}\"", path.string());
   if (extension == ".ply") return fmt::format("is a splat file: see beam check \"{}\"", path.string());

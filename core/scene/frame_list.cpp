@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <map>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/word_list.h"
 #include "core/scene/gaussian_sequence.h"
 
 namespace beam {
@@ -33,18 +33,6 @@ long long parseNumber(std::string_view text, std::string_view item) {
 struct Span {
   long long first, last, stride;
 };
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-bool isAll(std::string_view word) {
-  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
-  constexpr std::string_view kAll = "all";
-  return std::equal(word.begin(), word.end(), kAll.begin(), kAll.end(), same);
-}
 
 // "5", "1-9", "1-" (to the last of `numbers`) or "1-9x2".
 Span parseSpan(std::string_view item, const std::map<long long, FrameIndex>& numbers) {
@@ -74,7 +62,7 @@ std::string numbersText(const std::map<long long, FrameIndex>& by_number) {
 
 }  // namespace
 
-bool isAllFrames(std::string_view list) { return isAll(trimmed(list)); }
+bool isAllFrames(std::string_view list) { return lowerCase(trimmed(list)) == "all"; }
 
 std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<std::string>& frames) {
   std::map<long long, FrameIndex> by_number;
@@ -87,7 +75,7 @@ std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<
     const std::size_t comma = list.find(',');
     const std::string_view item = trimmed(list.substr(0, comma));
     const auto named = std::find(frames.begin(), frames.end(), item);
-    if (isAll(item)) {
+    if (isAllFrames(item)) {
       for (std::size_t i = 0; i < frames.size(); ++i) chosen.insert(FrameIndex{static_cast<std::int32_t>(i)});
     } else if (named != frames.end()) {
       chosen.insert(FrameIndex{static_cast<std::int32_t>(named - frames.begin())});

@@ -5,35 +5,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
-#include <sstream>
 
 #include "core/base/error.h"
 #include "core/base/fields.h"
+#include "core/base/word_list.h"
 #include "core/scene/frame_list.h"
 #include "core/scene/name_pattern.h"
 
 namespace beam {
 
 namespace {
-
-std::vector<std::string> wordsOf(const std::string& list) {
-  std::vector<std::string> words;
-  std::istringstream in(list);
-  for (std::string word; std::getline(in, word, ',');) {
-    const std::size_t first = word.find_first_not_of(" \t");
-    if (first != std::string::npos)
-      words.push_back(word.substr(first, word.find_last_not_of(" \t") - first + 1));
-  }
-  return words;
-}
-
-std::string lowerCase(std::string word) {
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return word;
-}
 
 bool isChosen(const View& view, const std::string& word) {
   const std::string kind = lowerCase(word);
@@ -65,7 +47,7 @@ bool isChosen(const View& view, const std::string& word) {
 std::vector<View> selectViews(const std::string& words, const CaptureSet& capture) {
   std::vector<View> chosen;
   std::set<std::string> names;
-  for (const std::string& word : wordsOf(words)) {
+  for (const std::string& word : splitAtCommas(words)) {
     bool some = false;
     for (const View& view : capture.views) {
       if (!isChosen(view, word)) continue;

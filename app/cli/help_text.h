@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The help of a command, made of its declaration and its examples.
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace beam {
+
+std::string helpText(const CLI::App& command);
+// Everything that help says, for other programs.
+std::string helpJson(const CLI::App& app);
+// Every command and topic as one Markdown page: resources/command-line.md.
+std::string helpMarkdown(const CLI::App& app);
+
+}  // namespace beam

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/help_topics.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/cli/exit_codes.h"
+#include "app/cli/help_page.h"
+#include "core/scene/channel.h"
+#include "core/work/export_frames.h"
+
+namespace beam {
+namespace {
+
+std::string formText(const ChannelInfo& channel) {
+  switch (channel.file) {
+    case FileForm::Png:
+      return "PNG, 8 bit";
+    case FileForm::Ply:
+      return "PLY, one file a frame, no camera in its path";
+    case FileForm::HalfExr:
+    case FileForm::FloatExr:
+      break;
+  }
+  return fmt::format("EXR, {} float, {}", channel.file == FileForm::HalfExr ? "half" : "32 bit",
+                     componentsOf(channel) == 3 ? "channels R G B" : "one channel Y");
+}
+
+std::string contentText(const ChannelInfo& channel) {
+  switch (channel.quantity) {
+    case Quantity::Color:
+      return channel.file == FileForm::Png ? "sRGB, no tone curve" : "linear Rec.709";
+    case Quantity::Direction:
+      return "unit x y z in the axes of --frame-of";
+    case Quantity::Length:
+      return "along the optical axis, in the unit of --frame-of (world: metres)";
+    case Quantity::Scalar:
+      return channel.unit.empty() ? "from 0 to 1" : "in the axes and the unit of --frame-of";
+  }
+  return {};
+}
+
+std::string edgeText(const ChannelInfo& channel) {
+  if (channel.file == FileForm::Ply) return {};
+  if (channel.times_alpha) return "; value x alpha, on black";
+  const float least = channel.least_alpha;
+  if (least <= 0) return {};
+  return least >= 0.1f ? fmt::format("; 0 where alpha is below {:.1f}", least)
+                       : fmt::format("; 0 where alpha is below 1/{:.0f}", std::round(1 / least));
+}
+
+std::string channelText(const ChannelInfo& channel) {
+  std::string text =
+      fmt::format("{}. {}: {}{}.", channel.title, formText(channel), contentText(channel), edgeText(channel));
+  if (needsMaterials(channel)) text += " Needs Materials.";
+  if (channel.needs == ChannelNeeds::MaterialsAndLight) text += " Needs --environment FILE.";
+  return text;
+}
+
+// As folders are named.
+std::string folderText(const ChannelInfo& channel) {
+  return channel.id == kRelightChannel ? fmt::format("{}_<panorama>", channel.id) : channel.id;
+}
+
+std::string filesText() {
+  HelpPage page(20);
+  page.paragraph("What the program writes, and where. Nothing is written into a capture.");
+  page.heading("Pictures of beam render");
+  page.paragraph(
+      "OUT/<channel>/<camera>/<frame>.<png|exr>; meshes OUT/mesh/<frame>.ply. A frame is named as "
+      "in the capture, <panorama> is the file name of the light without its ending.",
+      2);
+  page.blank();
+  for (const ChannelInfo& channel : channels()) page.row(folderText(channel), channelText(channel));
+  page.blank();
+  page.paragraph(
+      "Every EXR has either R, G and B or one channel Y, without layers, so that every reader takes "
+      "it. Values are never divided by alpha.",
+      2);
+  page.heading("Exports of beam export");
+  for (const ExportFormat& format : exportFormats())
+    page.row(
+        fmt::format("--format {}", format.id),
+        fmt::format("{}: OUT/frame.000000.{}, the capture's frame number in six digits; the frame's name "
+                    "where frames have no numbers of their own",
+                    format.help, format.extension));
+  page.heading("A project, Name.beam");
+  page.row("project.json", "the capture's place, the settings that differ from the preset, looks");
+  page.row("history/", "the last versions of project.json");
+  page.row("results/",
+           "one folder a result: plain PLY, EXR, PNG and JSON that other programs open, and "
+           "result.json, which says what it was made of");
+  page.row("failures/", "why a frame failed, for beam status");
+  page.row("logs/", "what the window told, a file a session");
+  page.row("leases/, LOCK", "who computes what; processes may share a project");
+  page.heading("Files that are there already");
+  page.paragraph(
+      "A file is replaced where the same command wrote it; another is refused with exit code 2 "
+      "unless --force is given.",
+      2);
+  return page.text();
+}
+
+std::string exitCodesText() {
+  HelpPage page(4);
+  page.paragraph(
+      "What the program ends with; a script can rely on it. What went wrong is on standard error, in a "
+      "line that starts with \"error:\".");
+  page.blank();
+  for (const ExitCodeInfo& e : exitCodes()) {
+    page.row(fmt::format("{}", e.code), e.meaning);
+    if (*e.advice) page.row("", fmt::format("What to do: {}", e.advice));
+  }
+  return page.text();
+}
+
+std::string environmentText() {
+  HelpPage page(12);
+  page.paragraph("Two things have this name: variables of the shell, and panoramas of the light.");
+  page.heading("Environment variables");
+  page.row("NO_COLOR", "set to anything: no colours in messages");
+  page.row("TERM", "\"dumb\" or not set: plain lines instead of a bar, no colours");
+  page.row("TMPDIR", "where beam evaluate puts pictures for a moment; else /tmp");
+  page.blank();
+  page.paragraph(
+      "The width of a line is asked of the terminal itself, not of COLUMNS. Everything else is said "
+      "with flags and settings: what is not typed does not change a result.",
+      2);
+  page.heading("Panoramas of the light (--environment FILE)");
+  page.paragraph(
+      "A latitude-longitude picture in OpenEXR (.exr) or Radiance (.hdr), linear Rec.709, twice as "
+      "wide as high. Its values are radiance; they are used as they are, the light has gain 1.",
+      2);
+  page.blank();
+  page.row("top row", "+Y, up");
+  page.row("centre", "+Z");
+  page.row("a quarter", "of the width from the left: +X");
+  page.row("u", "0.5 - atan2(x, z) / 2 pi, from the left edge");
+  page.row("v", "0.5 - asin(y) / pi, from the top edge");
+  page.blank();
+  page.paragraph(
+      "These are the axes of the world (right-handed, +Y up, metres), and those of OpenEXR and USD. In a "
+      "capture "
+      "with +Z up, x, y and z of the world are Y, Z and X of the capture; the same turn takes Blender's "
+      "panoramas "
+      "(centre +X, +Z up) onto ours pixel for pixel, so that such a panorama needs no turn.",
+      2);
+  page.blank();
+  page.paragraph(
+      "beam check FILE says where the brightest direction is. process, new and run keep the panorama "
+      "as the light of the photographs; render takes one to relight with.",
+      2);
+  return page.text();
+}
+
+std::string framesText() {
+  HelpPage page(20);
+  page.paragraph("How frames and cameras are chosen. Numbers are those in the capture's own file names.");
+  page.heading("Frames (--frames LIST)");
+  page.row("5", "one frame");
+  page.row("0-7", "frames 0 to 7; both must be there, gaps are the capture's own");
+  page.row("1-", "from 1 to the last");
+  page.row("1-9x2", "every second from 1 to 9: 1, 3, 5, 7, 9");
+  page.row("1,5,10-12", "several, with commas");
+  page.row("all", "all; render, evaluate and export: all that are solved");
+  page.row("frame_0003", "a frame by its name");
+  page.heading("Takes");
+  page.paragraph(
+      "Frames that follow each other are solved as a take: each builds on the one before, which is "
+      "faster and steadier. Every run of consecutive numbers in LIST is a take of its own, and a "
+      "number that stands alone is fitted alone. A run without --frames takes the whole capture.",
+      2);
+  page.blank();
+  page.paragraph(
+      "--every K solves every Kth frame, each built on the one K before, for a first look; render and "
+      "export interpolate those between and say so.",
+      2);
+  page.heading("Cameras (--cameras LIST)");
+  page.row("test", "those held out, by the capture's description or --hold-out");
+  page.row("train", "the others, which the fit saw");
+  page.row("all", "both");
+  page.row("cam03", "a camera by its name");
+  page.row("'cam0*'",
+           "names by a pattern: * is any letters, ? is one; quote it, so that the shell leaves it alone");
+  page.row("test,cam03,'top*'", "several, with commas; each camera once");
+  page.blank();
+  page.paragraph(
+      "--hold-out 8 keeps every 8th camera for testing, --hold-out cam02,cam07 these, --hold-out none "
+      "none. A camera that is held out is never used for fitting.",
+      2);
+  return page.text();
+}
+
+std::string settingsText() {
+  HelpPage page(22);
+  page.paragraph(
+      "Settings have names like surface.iterations: the stage, then the setting. beam stages lists "
+      "every one with its default, its range and its meaning.");
+  page.heading("Where a value comes from");
+  page.row("1. the default", "the paper's number");
+  page.row("2. the preset",
+           "draft (a look in a minute), standard (when nothing is said), paper (the paper's numbers); "
+           "it says what differs from the defaults");
+  page.row("3. the project", "what was set with --set; project.json keeps it until it is taken back");
+  page.heading("Flags of process, new and run");
+  page.row("--preset NAME", "the preset of the project; what was set by name stays");
+  page.row("--set KEY=VALUE",
+           "a setting; several times for several. VALUE is a number, true, false or a word");
+  page.row("--unset KEY", "take a setting back to what the preset says");
+  page.row("--reset", "take all settings back to what the preset says");
+  page.blank();
+  page.paragraph(
+      "An unknown name, a wrong type or a value out of range is refused before anything is computed or "
+      "saved. What is set counts for this run and those after it.",
+      2);
+  page.heading("What is computed again");
+  page.paragraph(
+      "A result is kept under the settings it was made with. After a change, only steps that the setting "
+      "reaches are computed again; taking it back finds the earlier results. Settings that cost time or "
+      "memory alone change no result.",
+      2);
+  return page.text();
+}
+
+}  // namespace
+
+const std::vector<HelpTopic>& helpTopics() {
+  static const std::vector<HelpTopic> all = {
+      {"files", "what render and export write, and what a project holds", filesText},
+      {"frames", "how frames and cameras are chosen; takes", framesText},
+      {"settings", "--set, --preset, and where values come from", settingsText},
+      {"environment", "variables of the shell; axes of panoramas of the light", environmentText},
+      {"exit-codes", "what the program ends with", exitCodesText},
+  };
+  return all;
+}
+
+}  // namespace beam

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists of words as people type them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace beam {
+
+// Without blanks around it.
+std::string_view trimmed(std::string_view text);
+// What stands between the commas, trimmed; none that are empty.
+std::vector<std::string> splitAtCommas(std::string_view text);
+// Of A to Z alone.
+std::string lowerCase(std::string_view word);
+
+}  // namespace beam
