@@ -36,10 +36,23 @@ auto parsed(std::string_view what, std::string_view json, Body&& body) {
 
 }  // namespace
 
+std::string aboutText(const ResultRecord& r) {
+  const std::string of = r.frame.empty() ? "the whole project" : fmt::format("frame {}", r.frame);
+  const std::string text = fmt::format("{} of {}{}{}", r.ingredients.step.text(), of,
+                                       r.ingredients.later ? ", built on the frame before" : "",
+                                       r.lead ? ", as a lead of a take" : "");
+  if (r.ingredients.parameters.empty()) return text + "; every setting has its default";
+  std::vector<std::string> differing;
+  for (const auto& [name, value] : r.ingredients.parameters)
+    differing.push_back(fmt::format("{} = {}", name, value));
+  return fmt::format("{}; differs from the defaults in {}", text, fmt::join(differing, ", "));
+}
+
 std::string toJson(const ResultRecord& r) {
   Json j;
   j["format"] = 1;
   j["key"] = r.key.hex();
+  j["about"] = aboutText(r);
   j["step"] = r.ingredients.step.text();
   j["version"] = r.ingredients.version;
   j["parameters"] = r.ingredients.parameters;

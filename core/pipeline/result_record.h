@@ -35,6 +35,11 @@ struct ResultRecord {
   std::map<std::string, std::string> pictures = {};  // picturesRead; of earlier versions empty
 };
 
+// The key for people: "surface.refine of frame 000002; differs from the defaults in surface.iterations =
+// 500".
+std::string aboutText(const ResultRecord& record);
+
+// With aboutText beside the key, which nobody reads back.
 std::string toJson(const ResultRecord& record);
 // Throws Error{Data} naming what is missing.
 ResultRecord parseResultRecord(std::string_view json);

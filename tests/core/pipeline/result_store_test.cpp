@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/result_store.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -13,6 +15,8 @@ namespace beam::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class Store : public ::testing::Test {
  protected:
@@ -180,6 +184,36 @@ TEST_F(Store, RecordsSurviveTheTripThroughJson) {
   EXPECT_EQ(toJson(back), toJson(r));
   EXPECT_EQ(keyOf(back.ingredients), keyOf(r.ingredients));
   EXPECT_EQ(back.ingredients.previous, r.ingredients.previous);
+}
+
+TEST_F(Store, ARecordSaysBesideItsKeyWhatItIs) {
+  ResultRecord r;
+  r.key = key_;
+  r.ingredients.step = "surface.refine"_step;
+  r.frame = "000002";
+  EXPECT_EQ(aboutText(r), "surface.refine of frame 000002; every setting has its default");
+  r.ingredients.parameters = {{"surface.cap", "20"}, {"surface.iterations", "500"}};
+  r.ingredients.later = true;
+  const std::string about =
+      "surface.refine of frame 000002, built on the frame before; differs from the defaults in "
+      "surface.cap = 20, surface.iterations = 500";
+  EXPECT_EQ(aboutText(r), about);
+  EXPECT_THAT(toJson(r),
+              HasSubstr(fmt::format("\"key\": \"{}\",\n  \"about\": \"{}\",\n", key_.hex(), about)));
+  r.frame.clear();
+  EXPECT_THAT(aboutText(r), StartsWith("surface.refine of the whole project"));
+}
+
+TEST_F(Store, RecordsWithoutTheNoteOrWithAnotherAreReadAlike) {
+  ResultRecord r;
+  r.key = key_;
+  r.ingredients.step = "surface.fit"_step;
+  const std::string json = toJson(r), note = fmt::format("  \"about\": \"{}\",\n", aboutText(r));
+  for (const char* other : {"", "  \"about\": 3,\n"}) {
+    std::string changed = json;
+    changed.replace(json.find(note), note.size(), other);
+    EXPECT_EQ(toJson(parseResultRecord(changed)), json);
+  }
 }
 
 }  // namespace
