@@ -85,7 +85,10 @@ JobFinished Job::run(const RunRequest& request) {
 void Job::runAll(const RunRequest& request) {
   makeRunPlan(project_, request);  // what cannot be run changes no takes
   project_.forgetKeys();
-  if (!project_.readOnly()) project_.store().removeStale();
+  if (!project_.readOnly()) {
+    Progress progress(stop_);
+    project_.store().removeStale(progress);
+  }
   arrangeTakes(project_, request);
   const RunPlan plan = makeRunPlan(project_, request);
   finished_.notes = plan.notes;

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -48,6 +49,50 @@ std::vector<std::string> filesBelow(const fs::path& folder) {
   return names;
 }
 
+std::optional<Digest> keyNamed(const std::string& name) {
+  try {
+    return parseDigest(name);
+  } catch (const Error&) {
+    return std::nullopt;  // not ours
+  }
+}
+
+// Ascending. Entries with other names are passed over.
+std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension) {
+  std::vector<Digest> found;
+  std::error_code failed;
+  for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
+    if (i->path().extension() != extension) continue;
+    if (const std::optional<Digest> key = keyNamed(i->path().stem().string())) found.push_back(*key);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// Entries of the folder whose names begin with a key from the `at`-th letter on, with it.
+std::vector<std::pair<Digest, fs::path>> namedByKey(const fs::path& folder, std::size_t at) {
+  constexpr std::size_t kHexDigits = 32;
+  std::vector<std::pair<Digest, fs::path>> found;
+  std::error_code failed;
+  for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
+    const std::string name = i->path().filename().string();
+    if (name.size() <= at + kHexDigits || name[at + kHexDigits] != '.') continue;
+    if (const auto key = keyNamed(name.substr(at, kHexDigits))) found.emplace_back(*key, i->path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// With the key that each was built for.
+std::vector<std::pair<Digest, fs::path>> halfBuiltIn(const fs::path& results) {
+  std::vector<std::pair<Digest, fs::path>> found = namedByKey(results, 1);
+  std::erase_if(found, [](const auto& entry) {
+    const std::string name = entry.second.filename().string();
+    return name.front() != '.' || !name.ends_with(".tmp");
+  });
+  return found;
+}
+
 // Everything in the folder to the disk, and what it is into the record.
 void sealFiles(const fs::path& folder, ResultRecord& record) {
   record.files.clear();
@@ -72,20 +117,14 @@ std::string stampOf(const fs::path& folder, const ResultRecord& record) {
 
 fs::path ResultStore::folderOf(const Digest& key) const { return project_ / "results" / key.hex(); }
 
-std::vector<Digest> ResultStore::keys() const {
-  std::vector<Digest> found;
-  std::error_code failed;
-  for (fs::directory_iterator i(project_ / "results", failed), end; !failed && i != end;
-       i.increment(failed)) {
-    const std::string name = i->path().filename().string();
-    try {
-      found.push_back(parseDigest(name));
-    } catch (const Error&) {
-      continue;  // half-built, or not ours
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
+std::vector<Digest> ResultStore::keys() const { return keysIn(project_ / "results", ""); }
+
+std::vector<Digest> ResultStore::leases() const { return keysIn(project_ / "leases", ""); }
+
+std::vector<Digest> ResultStore::failures() const { return keysIn(project_ / "failures", ".json"); }
+
+fs::path ResultStore::halfBuiltFolderOf(const Digest& key) const {
+  return project_ / "results" / fmt::format(".{}.{}.tmp", key.hex(), ::getpid());
 }
 
 std::optional<ResultRecord> ResultStore::record(const Digest& key) const {
@@ -184,7 +223,7 @@ std::string ResultStore::leaseHolder(const Digest& key) const {
 void ResultStore::publish(const Digest& key, ResultRecord record, const Build& build) const {
   const fs::path results = project_ / "results";
   makeFolder(results);
-  const fs::path temporary = results / fmt::format(".{}.{}.tmp", key.hex(), ::getpid());
+  const fs::path temporary = halfBuiltFolderOf(key);
   onDisk([&] { fs::remove_all(temporary); });
   makeFolder(temporary);
   try {
@@ -211,20 +250,51 @@ void ResultStore::publish(const Digest& key, ResultRecord record, const Build& b
   fs::remove_all(temporary, ignored);
 }
 
-void ResultStore::removeStale() const {
-  std::error_code failed;
+void ResultStore::discard(const Digest& key) const {
+  const fs::path aside = halfBuiltFolderOf(key);
+  onDisk([&] {
+    fs::remove_all(aside);  // of a process that had our number and died
+    fs::rename(folderOf(key), aside);
+  });
+  std::lock_guard lock(mutex_);
+  good_.erase(key);
+}
+
+std::vector<fs::path> ResultStore::stale() const {
   std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(project_ / "results", failed)) {
-    const std::string name = entry.path().filename().string();
-    const bool ours = name.size() > 38 && name.front() == '.' && name.ends_with(".tmp") &&
-                      name.find_first_not_of("0123456789abcdef", 1) == 33;
-    if (ours) found.push_back(entry.path());
+  for (const auto& [key, folder] : halfBuiltIn(project_ / "results")) {
+    if (!isLeased(key)) found.push_back(folder);
   }
-  for (const fs::path& folder : found) {
+  return found;
+}
+
+void ResultStore::removeStale(Progress& progress) const {
+  const std::vector<std::pair<Digest, fs::path>> found = halfBuiltIn(project_ / "results");
+  if (found.empty()) return;
+  // That a result was discarded is on the disk before its files go: never is half a result found as one.
+  syncPath(project_ / "results");
+  progress.expect(static_cast<std::int64_t>(found.size()), "folders");
+  for (const auto& [key, folder] : found) {
     // The builder of a folder holds the lease of its key; a lease that can be had has no builder.
-    const std::optional<FileLock> lease = tryLease(parseDigest(folder.filename().string().substr(1, 32)));
-    if (lease) onDisk([&] { fs::remove_all(folder); });
+    const std::optional<FileLock> lease = tryLease(key);
+    if (lease) {
+      onDisk([&, &folder = folder] {
+        const bool is_folder = fs::is_directory(fs::symlink_status(folder));
+        for (const std::string& name : is_folder ? filesBelow(folder) : std::vector<std::string>()) {
+          progress.check();
+          fs::remove(folder / name);
+        }
+        fs::remove_all(folder);
+      });
+    }
+    progress.step();
   }
+}
+
+std::vector<fs::path> ResultStore::setAside() const {
+  std::vector<fs::path> found;
+  for (auto& [key, folder] : namedByKey(project_ / "quarantine", 0)) found.push_back(std::move(folder));
+  return found;
 }
 
 void ResultStore::noteFailure(const Digest& key, const FailureNote& note) const {

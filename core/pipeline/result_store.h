@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/hash.h"
+#include "core/base/progress.h"
 #include "core/pipeline/file_lock.h"
 #include "core/pipeline/result_record.h"
 
@@ -45,8 +46,20 @@ class ResultStore {
   using Build = std::function<void(const std::filesystem::path& folder, ResultRecord& record)>;
   void publish(const Digest& key, ResultRecord record, const Build& build) const;
 
-  // Removes half-built folders that no living process works on.
-  void removeStale() const;
+  // Takes a result out of results/: from now on it counts as none, and its folder as a half-built one, which
+  // removeStale deletes. The caller holds the lease.
+  void discard(const Digest& key) const;
+  // Half-built folders that no living process works on, and those of discarded results.
+  std::vector<std::filesystem::path> stale() const;
+  // Deletes these; looks for a stop between two files. A kill in the middle leaves the rest to the next time.
+  void removeStale(Progress& progress) const;
+  // Damaged results that were moved to quarantine/.
+  std::vector<std::filesystem::path> setAside() const;
+
+  // Whose files are in leases/ and failures/, ascending. A file of a lease need not be held: a kill leaves
+  // it.
+  std::vector<Digest> leases() const;
+  std::vector<Digest> failures() const;
 
   void noteFailure(const Digest& key, const FailureNote& note) const;
   void clearFailure(const Digest& key) const;
@@ -55,6 +68,7 @@ class ResultStore {
  private:
   std::string findDamage(const Digest& key, const ResultRecord& record) const;
   void quarantine(const Digest& key, const std::string& reason) const;
+  std::filesystem::path halfBuiltFolderOf(const Digest& key) const;
 
   std::filesystem::path project_;
   mutable std::mutex mutex_;

@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 class Store : public ::testing::Test {
@@ -148,7 +149,8 @@ TEST_F(Store, HalfBuiltFoldersOfTheDeadAreRemovedThoseOfTheLivingStay) {
   fs::create_directories(foreign);
   const auto lease = store_.tryLease(live);
   ASSERT_TRUE(lease);
-  store_.removeStale();
+  Progress progress;
+  store_.removeStale(progress);
   EXPECT_TRUE(fs::exists(foreign)) << "not ours";
   EXPECT_TRUE(fs::exists(results / ("." + live.hex() + ".123.tmp")));
   EXPECT_FALSE(fs::exists(results / ("." + dead.hex() + ".123.tmp")));
@@ -214,6 +216,38 @@ TEST_F(Store, RecordsWithoutTheNoteOrWithAnotherAreReadAlike) {
     changed.replace(json.find(note), note.size(), other);
     EXPECT_EQ(toJson(parseResultRecord(changed)), json);
   }
+}
+
+TEST_F(Store, ADiscardedResultIsNoneAndItsFolderIsDeletedWithTheHalfBuilt) {
+  publish();
+  {
+    const auto lease = store_.tryLease(key_);
+    store_.discard(key_);
+    EXPECT_FALSE(store_.has(key_));
+    EXPECT_FALSE(store_.verified(key_));
+    EXPECT_EQ(quarantined(), 0);
+    EXPECT_THAT(store_.stale(), IsEmpty()) << "somebody is at it";
+  }
+  ASSERT_EQ(store_.stale().size(), 1u);
+  EXPECT_TRUE(fs::exists(store_.stale()[0] / "maps" / "b.txt"));
+  Progress progress;
+  store_.removeStale(progress);
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "results"));
+  publish("again");
+  EXPECT_TRUE(freshlyVerified());
+}
+
+TEST_F(Store, AStopLeavesTheRestOfTheHalfBuiltToTheNextTime) {
+  publish();
+  store_.discard(key_);
+  std::stop_source stop;
+  stop.request_stop();
+  Progress stopped(stop.get_token());
+  EXPECT_THROW(store_.removeStale(stopped), Cancelled);
+  EXPECT_EQ(store_.stale().size(), 1u);
+  Progress progress;
+  store_.removeStale(progress);
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "results"));
 }
 
 }  // namespace
