@@ -141,6 +141,17 @@ Json stepJson(const Project& project, const StepId& id, const StepInfo& step, Re
   return j;
 }
 
+std::string diskText(const StageUse& stage) {
+  const std::string others = sizeText(stage.others.bytes);
+  if (stage.stage.empty()) return fmt::format("{} (beam clean)", others);
+  std::string text = sizeText(stage.in_force.bytes);
+  if (stage.others.count > 0) text += fmt::format(", {} of other settings (beam clean)", others);
+  if (!stage.blocked_reason.empty()) text += " of any settings, as it is blocked";
+  return text;
+}
+
+Json toJsonValue(const DiskAmount& amount) { return {{"results", amount.count}, {"bytes", amount.bytes}}; }
+
 }  // namespace
 
 const char* toText(StepState state) {
@@ -205,6 +216,27 @@ std::string statusJson(const Project& project) {
     for (const StepInfo& step : info.steps)
       stage["steps"].push_back(stepJson(project, StepId(info.id, step.id), step, reasons));
     j["stages"].push_back(std::move(stage));
+  }
+  return j.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string diskText(const DiskUse& use) {
+  std::string text;
+  for (const StageUse& stage : use.stages) {
+    if (stage.in_force.count + stage.others.count == 0) continue;
+    text += fmt::format("\n  {:<18} {}", stage.stage.empty() ? stage.title : stage.stage, diskText(stage));
+  }
+  return text.empty() ? text : fmt::format("Disk{}", text);
+}
+
+std::string diskJson(const DiskUse& use) {
+  Json j = {{"in_force", toJsonValue(use.inForce())}, {"other", toJsonValue(use.others())}};
+  j["stages"] = Json::array();
+  for (const StageUse& stage : use.stages) {
+    j["stages"].push_back({{"id", stage.stage},
+                           {"title", stage.title},
+                           {"in_force", toJsonValue(stage.in_force)},
+                           {"other", toJsonValue(stage.others)}});
   }
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/pipeline/disk_use.h"
 #include "core/pipeline/project.h"
 
 namespace beam {
@@ -12,5 +13,9 @@ const char* toText(StepState state);  // "done"
 
 std::string statusText(const Project& project);
 std::string statusJson(const Project& project);
+
+// "Disk" and a line a stage: "surface 210 MB, 340 MB of other settings (beam clean)"; empty: no results.
+std::string diskText(const DiskUse& use);
+std::string diskJson(const DiskUse& use);
 
 }  // namespace beam
