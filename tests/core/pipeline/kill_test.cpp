@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// kill -9 at any moment, and several writers at once: nothing that was acknowledged is lost, nothing
-// half-written is seen, and the bytes are those of an undisturbed run.
+// kill -9 at any moment, of a clean as well, and several writers at once: nothing that was acknowledged is
+// lost, nothing half-written is seen, and the bytes are those of an undisturbed run.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/base/rng.h"
+#include "core/pipeline/clean_results.h"
 #include "tests/core/pipeline/fake_pipeline.h"
 
 namespace beam::testing {
@@ -122,6 +123,42 @@ TEST(Kill, AtAnyMomentLosesNothingThatWasAcknowledged) {
     EXPECT_FALSE(std::filesystem::exists(house.root() / "p.beam" / "quarantine"));
   }
   EXPECT_GT(cut_short, 5);
+}
+
+TEST(Kill, InTheMiddleOfACleanCostsNoResultInForceAndTheNextFinishes) {
+  FakeHouse house;
+  house.newProject();
+  house.finish(house.open());
+  const auto calm = productsOf(house.root() / "p.beam");
+  const RandomStream random(12);
+  int cut_short = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    for (const int iterations : {12, 13, 14}) {
+      Project other = house.open();
+      other.set("surface.iterations", iterations);
+      other.save();
+      house.finish(house.open());
+    }
+    Project own = house.open();
+    own.reset("surface.iterations");
+    own.save();
+    const pid_t child = ::fork();
+    if (child == 0) {
+      Progress progress;
+      cleanResults(house.root() / "p.beam", house.setup, progress);
+      ::_exit(0);
+    }
+    std::this_thread::sleep_for(
+        std::chrono::microseconds(random.below(static_cast<std::uint64_t>(trial), 10000)));
+    ::kill(child, SIGKILL);
+    cut_short += exitOf(child) == -SIGKILL;
+    ASSERT_EQ(house.finish(house.open()).computed, 0) << "trial " << trial;
+    Progress progress;
+    cleanResults(house.root() / "p.beam", house.setup, progress);
+    EXPECT_EQ(productsOf(house.root() / "p.beam"), calm) << "trial " << trial;
+    EXPECT_FALSE(std::filesystem::exists(house.root() / "p.beam" / "quarantine"));
+  }
+  EXPECT_GT(cut_short, 0);
 }
 
 TEST(Writers, ThatRunAtOnceComputeEachStepOnceAndAgree) {
