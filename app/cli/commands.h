@@ -39,6 +39,7 @@ void addDeviceFlags(CLI::App& command, DeviceChoice& choice);
 std::string versionWords(const Services& services, bool verbose);
 
 void addCheckCommand(CLI::App& app, CommandContext& context);
+void addCleanCommand(CLI::App& app, CommandContext& context);
 void addCompletionCommand(CLI::App& app, CommandContext& context);
 void addEvaluateCommand(CLI::App& app, CommandContext& context);
 void addExportCommand(CLI::App& app, CommandContext& context);

@@ -59,15 +59,17 @@ void tellOtherPlacement(const std::optional<CapturePlacement>& before, const Pro
                               toText(now), toText(*before)));
 }
 
-std::string statusWords(const Project& project) {
+std::string statusWords(const Project& project, const DiskUse& use) {
   std::string text = statusText(project);
+  if (const std::string disk = diskText(use); !disk.empty()) text += fmt::format("\n{}", disk);
   for (const LeftOutCamera& c : leftOutCameras(project))
     text += fmt::format("\nleft out of the fit: {}", toText(c, {}));
   return text;
 }
 
-std::string statusAsJson(const Project& project) {
+std::string statusAsJson(const Project& project, const DiskUse& use) {
   nlohmann::ordered_json j = nlohmann::ordered_json::parse(statusJson(project));
+  j["disk"] = nlohmann::ordered_json::parse(diskJson(use));
   j["left_out"] = nlohmann::ordered_json::array();
   for (const LeftOutCamera& c : leftOutCameras(project))
     j["left_out"].push_back(
@@ -154,7 +156,12 @@ void addStatusCommand(CLI::App& app, CommandContext& context) {
     context.action = [folder, flags, &context] {
       const Project project = Project::open(*folder, context.services.pipeline);
       requireAnswerTarget(*flags, "status");
-      answer(*flags, "status", context.console, statusWords(project), [&] { return statusAsJson(project); });
+      context.interrupted = "interrupted; nothing was written";
+      Progress progress(context.stop, context.console.listener());
+      const DiskUse use = diskUse(project, progress);
+      context.console.endProgress();
+      answer(*flags, "status", context.console, statusWords(project, use),
+             [&] { return statusAsJson(project, use); });
       return 0;
     };
   });

@@ -24,6 +24,7 @@ void addCommands(CLI::App& app, CommandContext& context) {
   addNewCommand(app, context);
   addRunCommand(app, context);
   addStatusCommand(app, context);
+  addCleanCommand(app, context);
   addStagesCommand(app, context);
   addCheckCommand(app, context);
   addSampleCommand(app, context);

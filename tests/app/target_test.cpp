@@ -38,6 +38,7 @@ class Target : public ::testing::Test {
     const std::string capture = SampleHouse::capture().string();
     return {{"evaluate", project(), "--ground-truth", capture, "--json-file", file},
             {"status", project(), "--json-file", file},
+            {"clean", project(), "--json-file", file},
             {"stages", "--json-file", file},
             {"check", capture, "--json-file", file},
             {"report", project(), "--out", file},
