@@ -9,6 +9,7 @@
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <set>
 
@@ -19,6 +20,8 @@
 
 namespace beam {
 namespace {
+
+constexpr int kRowsAtOnce = 256;  // of a block's 32 a whole number
 
 class MemoryIn final : public Imf::IStream {
  public:
@@ -78,6 +81,8 @@ auto withExr(const std::filesystem::path& path, Body&& body) {
     bad(path, fmt::format("the OpenEXR picture cannot be read: {}", e.what()));
   }
 }
+
+std::size_t bytesOf(ExrPrecision precision) { return precision == ExrPrecision::Half ? 2 : 4; }
 
 std::vector<std::string> namesIn(const Imf::Header& header) {
   std::vector<std::string> names;
@@ -152,34 +157,55 @@ Planes readExr(const std::filesystem::path& path, const std::vector<std::string>
   });
 }
 
+void writeExr(const std::filesystem::path& path, int width, int height, std::span<const ExrChannel> channels,
+              const FileNotes& notes, const Progress* progress) {
+  std::size_t halves_of = 0, pixel_bytes = 0;
+  for (const ExrChannel& c : channels) {
+    halves_of += c.precision == ExrPrecision::Half;
+    pixel_bytes += bytesOf(c.precision);
+  }
+  requireExrSize(width, height, channels.size(), pixel_bytes, path);
+  const std::size_t plane = static_cast<std::size_t>(width) * height;
+  MemoryOut stream;
+  {
+    Imf::Header header(width, height);
+    header.compression() = Imf::PIZ_COMPRESSION;
+    for (const auto& [name, text] : notes) header.insert(name, Imf::StringAttribute(text));
+    Imf::FrameBuffer frame;
+    std::vector<half> halves;
+    halves.reserve(plane * halves_of);  // slices point into it
+    for (const ExrChannel& c : channels) {
+      if (header.channels().findChannel(c.name.c_str()))
+        throw Error(Error::Kind::Bug, fmt::format("two channels of an EXR picture are named {}", c.name));
+      const bool is_half = c.precision == ExrPrecision::Half;
+      const Imf::PixelType type = is_half ? Imf::HALF : Imf::FLOAT;
+      header.channels().insert(c.name.c_str(), Imf::Channel(type));
+      char* base = reinterpret_cast<char*>(const_cast<float*>(c.values));
+      if (is_half) {
+        base = reinterpret_cast<char*>(halves.data() + halves.size());
+        halves.insert(halves.end(), c.values, c.values + plane);
+      }
+      const std::size_t bytes = bytesOf(c.precision);
+      frame.insert(c.name.c_str(), Imf::Slice(type, base, bytes, bytes * static_cast<std::size_t>(width)));
+    }
+    Imf::OutputFile file(stream, header, 0);
+    file.setFrameBuffer(frame);
+    for (int y = 0; y < height; y += kRowsAtOnce) {
+      if (progress) progress->check();
+      file.writePixels(std::min(kRowsAtOnce, height - y));
+    }
+  }
+  writeFileAtomically(path, stream.bytes);
+}
+
 void writeExr(const std::filesystem::path& path, const Planes& planes,
               const std::vector<std::string>& channels, ExrPrecision precision, const FileNotes& notes) {
   if (channels.size() != static_cast<std::size_t>(planes.channels)) {
     throw Error(Error::Kind::Bug, "as many channel names as planes are needed to write an EXR picture");
   }
-  MemoryOut stream;
-  {
-    Imf::Header header(planes.width, planes.height);
-    header.compression() = Imf::PIZ_COMPRESSION;
-    for (const auto& [name, text] : notes) header.insert(name, Imf::StringAttribute(text));
-    const Imf::PixelType type = precision == ExrPrecision::Half ? Imf::HALF : Imf::FLOAT;
-    Imf::FrameBuffer frame;
-    std::vector<half> halves;
-    if (precision == ExrPrecision::Half) halves.assign(planes.values.begin(), planes.values.end());
-    for (int c = 0; c < planes.channels; ++c) {
-      header.channels().insert(channels[c].c_str(), Imf::Channel(type));
-      const std::size_t bytes = precision == ExrPrecision::Half ? 2 : 4;
-      char* base = precision == ExrPrecision::Half
-                       ? reinterpret_cast<char*>(halves.data() + planes.planeSize() * c)
-                       : reinterpret_cast<char*>(const_cast<float*>(planes.plane(c)));
-      frame.insert(channels[c].c_str(),
-                   Imf::Slice(type, base, bytes, bytes * static_cast<std::size_t>(planes.width)));
-    }
-    Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(frame);
-    file.writePixels(planes.height);
-  }
-  writeFileAtomically(path, stream.bytes);
+  std::vector<ExrChannel> named;
+  for (int c = 0; c < planes.channels; ++c) named.push_back({channels[c], precision, planes.plane(c)});
+  writeExr(path, planes.width, planes.height, named, notes);
 }
 
 }  // namespace beam

@@ -14,11 +14,12 @@ namespace beam {
 namespace {
 
 constexpr std::int64_t kMaxSide = 16384;
-constexpr std::int64_t kMaxRawBytes = std::int64_t{1} << 30;  // keeps PIZ's 32-bit arithmetic in range
-constexpr std::int64_t kMaxExpansion = 1100;                  // deflate's own limit is about 1030 : 1
+constexpr std::size_t kMaxRawBytes = std::size_t{1} << 30;  // keeps PIZ's 32-bit arithmetic in range
+constexpr std::int64_t kMaxExpansion = 1100;                // deflate's own limit is about 1030 : 1
 constexpr std::uint32_t kMaxAttributeBytes = 64 << 10;
 constexpr std::int32_t kMaxEdge = 1 << 24;  // of a window; sums and differences of edges stay in 32 bits
-constexpr int kMaxAttributes = 256, kMaxChannels = 64;
+constexpr int kMaxAttributes = 256;
+constexpr std::size_t kMaxChannels = 64;
 constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;
 
 struct Compression {
@@ -59,6 +60,22 @@ class ExrGate {
     sizes();
   }
 
+  // After check(). Blocks lie behind a table of where each begins; the last one ends with the file.
+  void checkEnd() {
+    if (tiled_) bad("tiled OpenEXR pictures are not followed to their end");
+    std::uint64_t last = 0;
+    for (std::int64_t b = 0; b < blocks_; ++b) last = std::max(last, get<std::uint64_t>());
+    constexpr std::uint64_t kHead = 8;  // row and size
+    if (last < at_ || last > bytes_.size() || bytes_.size() - last < kHead)
+      bad("the file ends before its last block; it is truncated");
+    at_ = static_cast<std::size_t>(last) + 4;
+    const auto size = get<std::uint32_t>();
+    if (size != bytes_.size() - at_)
+      bad(fmt::format("the last block announces {} bytes, {} are left", size, bytes_.size() - at_));
+  }
+
+  const FileNotes& notes() const { return notes_; }
+
  private:
   [[noreturn]] void bad(const std::string& what) const {
     throw Error(Error::Kind::Data, fmt::format("\"{}\": {}", path_.string(), what));
@@ -72,6 +89,8 @@ class ExrGate {
     at_ += sizeof(T);
     return v;
   }
+
+  const char* chars() const { return reinterpret_cast<const char*>(bytes_.data()) + at_; }
 
   std::string text() {
     std::string s;
@@ -111,6 +130,7 @@ class ExrGate {
       display_window_ = box();
       has_display_window_ = true;
     }
+    if (type == "string") notes_.emplace_back(name, std::string(chars(), size));
     if (name == "tiles" && type == "tiledesc" && size == 9) {
       tile_width_ = get<std::uint32_t>();
       tile_height_ = get<std::uint32_t>();
@@ -121,7 +141,7 @@ class ExrGate {
   }
 
   void channels(std::size_t end) {
-    for (int n = 0; at_ < end && bytes_[at_] != std::byte{0}; ++n) {
+    for (std::size_t n = 0; at_ < end && bytes_[at_] != std::byte{0}; ++n) {
       if (n == kMaxChannels) bad(fmt::format("expected at most {} channels", kMaxChannels));
       const std::string name = text();
       const auto type = get<std::int32_t>();
@@ -142,7 +162,7 @@ class ExrGate {
     return b;
   }
 
-  void sizes() const {
+  void sizes() {
     if (compression_ >= static_cast<int>(kCompressions.size()) || kCompressions[compression_].rows == 0) {
       const bool known = compression_ < static_cast<int>(kCompressions.size());
       bad(fmt::format("the compression {} is not read; save the picture with ZIP or PIZ",
@@ -157,21 +177,21 @@ class ExrGate {
     const std::int64_t w = data_window_.width(), h = data_window_.height();
     const auto left = static_cast<std::int64_t>(bytes_.size() - at_);
     const std::int64_t raw = w * h * raw_bytes_per_pixel_;
-    if (raw >= kMaxRawBytes) {
+    if (raw >= std::int64_t{kMaxRawBytes}) {
       bad(fmt::format("{} x {} pixels of {} bytes are more than {} bytes; save a smaller picture", w, h,
                       raw_bytes_per_pixel_, kMaxRawBytes));
     }
     const std::int64_t rows = kCompressions[compression_].rows;
-    std::int64_t blocks = (h + rows - 1) / rows;
+    blocks_ = (h + rows - 1) / rows;
     if (tiled_) {
       if (tile_width_ < 1 || tile_height_ < 1 || tile_width_ > kMaxSide || tile_height_ > kMaxSide ||
-          tile_width_ * tile_height_ * raw_bytes_per_pixel_ >= kMaxRawBytes) {
+          tile_width_ * tile_height_ * raw_bytes_per_pixel_ >= std::int64_t{kMaxRawBytes}) {
         bad(fmt::format("the header gives tiles of {} x {} pixels", tile_width_, tile_height_));
       }
-      blocks = ((w + tile_width_ - 1) / tile_width_) * ((h + tile_height_ - 1) / tile_height_);
+      blocks_ = ((w + tile_width_ - 1) / tile_width_) * ((h + tile_height_ - 1) / tile_height_);
     }
     // Every block has an entry of 8 bytes in the offset table and 8 bytes of its own head.
-    if (blocks * 16 > left || raw > left * kMaxExpansion) {
+    if (blocks_ * 16 > left || raw > left * kMaxExpansion) {
       bad(
           fmt::format("the header says {} x {} pixels of {} bytes, which {} bytes cannot hold; the file is "
                       "truncated or damaged",
@@ -186,13 +206,38 @@ class ExrGate {
   int compression_ = -1;
   std::int64_t raw_bytes_per_pixel_ = 0;
   Box data_window_, display_window_;
-  std::int64_t tile_width_ = 0, tile_height_ = 0;
+  std::int64_t tile_width_ = 0, tile_height_ = 0, blocks_ = 0;
+  FileNotes notes_;
 };
 
 }  // namespace
 
 void checkExrHeader(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   ExrGate(bytes, path).check();
+}
+
+FileNotes exrNotes(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  ExrGate gate(bytes, path);
+  gate.check();
+  gate.checkEnd();
+  return gate.notes();
+}
+
+void requireExrSize(int width, int height, std::size_t channels, std::size_t pixel_bytes,
+                    const std::filesystem::path& path) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" is not written: {}", path.string(), what));
+  };
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
+    refuse(fmt::format("expected 1 to {} pixels a side, found {} x {}", kMaxSide, width, height));
+  if (channels < 1 || channels > kMaxChannels)
+    refuse(fmt::format("expected 1 to {} channels in an OpenEXR file, found {}", kMaxChannels, channels));
+  if (pixel_bytes > kMaxRawBytes || static_cast<std::size_t>(width) * height * pixel_bytes >= kMaxRawBytes) {
+    refuse(fmt::format(
+        "{} x {} pixels of {} bytes are more than the {} bytes that an OpenEXR file is read with; "
+        "choose fewer channels a file or smaller pictures",
+        width, height, pixel_bytes, kMaxRawBytes));
+  }
 }
 
 }  // namespace beam

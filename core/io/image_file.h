@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/image/image.h"
 #include "core/io/written_by.h"
 
@@ -50,5 +52,17 @@ enum class ExrPrecision { Half, Float };
 // One channel a plane, PIZ-compressed, named as given ("Y", or "R" "G" "B"); notes are string attributes.
 void writeExr(const std::filesystem::path& path, const Planes& planes,
               const std::vector<std::string>& channels, ExrPrecision precision, const FileNotes& notes = {});
+
+// A channel of an EXR file: width x height values, rows top to bottom, no padding.
+struct ExrChannel {
+  std::string name;  // "R"; of a layer "normal.X"
+  ExrPrecision precision = ExrPrecision::Half;
+  const float* values = nullptr;
+};
+// Channels of different precision and layers in one file, otherwise as above: the same channels give the same
+// bytes. Throws Error{Data} for more than is read again (requireExrSize) before it takes memory. `progress`
+// is asked whether to stop: Cancelled, and nothing is written.
+void writeExr(const std::filesystem::path& path, int width, int height, std::span<const ExrChannel> channels,
+              const FileNotes& notes = {}, const Progress* progress = nullptr);
 
 }  // namespace beam

@@ -25,4 +25,11 @@ bool isWrittenBy(const std::filesystem::path& file, std::string_view command) {
   return beginning.find(writerOf(command)) != std::string::npos;
 }
 
+std::string noteIn(const FileNotes& notes, std::string_view name) {
+  for (const auto& [known, text] : notes) {
+    if (known == name) return text;
+  }
+  return {};
+}
+
 }  // namespace beam

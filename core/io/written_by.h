@@ -20,5 +20,7 @@ bool isWrittenBy(const std::filesystem::path& file, std::string_view command);
 
 // What a file says of itself beside its data: a name of ASCII letters and '_', and a text, each.
 using FileNotes = std::vector<std::pair<std::string, std::string>>;
+// The text of that name; empty: there is none.
+std::string noteIn(const FileNotes& notes, std::string_view name);
 
 }  // namespace beam
