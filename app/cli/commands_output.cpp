@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/cli/commands.h"
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/word_list.h"
 #include "core/render/cpu_scene_renderer.h"
@@ -22,7 +23,7 @@ constexpr const char* kSolvedFramesHelp =
 struct RenderFlags {
   std::string project, channels = "rgb", cameras = "test", frames = "all", environment;
   std::string frame_of = "capture", out;
-  bool force = false, strict = false;
+  bool layers = false, skip_existing = false, force = false, strict = false;
   DeviceChoice device;
 };
 
@@ -47,6 +48,17 @@ std::vector<std::string> channelsIn(const std::string& list) {
   return ids;
 }
 
+std::string writtenText(const RenderFramesOutcome& outcome, const RenderFlags& flags) {
+  if (outcome.kept > 0 && outcome.written == 0)
+    return fmt::format("nothing to draw: {} in \"{}\", as this command writes them",
+                       countText(outcome.kept, "file is there", "files are there"), flags.out);
+  return fmt::format("wrote {} of {} and {} to \"{}\"{}", fmt::join(channelsIn(flags.channels), ", "),
+                     countText(outcome.cameras, "camera"), countText(outcome.frames, "frame"), flags.out,
+                     outcome.kept == 0 ? std::string()
+                                       : fmt::format("; {} there already",
+                                                     countText(outcome.kept, "file was", "files were")));
+}
+
 int runRender(const RenderFlags& flags, CommandContext& context) {
   RenderFramesRequest request{.project = Project::open(flags.project, context.services.pipeline),
                               .channels = channelsIn(flags.channels),
@@ -54,17 +66,19 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
                               .frames = flags.frames,
                               .environments = {},
                               .world_frame = wantsWorld(flags.frame_of),
+                              .layers = flags.layers,
+                              .skip_existing = flags.skip_existing,
                               .out = flags.out,
                               .force = flags.force,
                               .strict = flags.strict};
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
+  context.interrupted = flags.skip_existing ? "interrupted; the same command goes on"
+                                            : "interrupted; the same command with --skip-existing goes on";
   const auto device = makeDevice(flags.device);
   Progress progress(context.stop, context.console.listener());
   const RenderFramesOutcome outcome = renderFrames(request, *newCpuSceneRenderer(*device), progress);
   context.console.endProgress();
-  context.console.print(fmt::format(
-      "wrote {} of {} camera{} and {} frame{} to \"{}\"", fmt::join(request.channels, ", "), outcome.cameras,
-      outcome.cameras == 1 ? "" : "s", outcome.frames, outcome.frames == 1 ? "" : "s", flags.out));
+  context.console.print(writtenText(outcome, flags));
   tellInterpolated(outcome.interpolated, context.console);
   return 0;
 }
@@ -85,8 +99,8 @@ int runExport(const ExportFlags& flags, CommandContext& context) {
   Progress progress(context.stop, context.console.listener());
   const ExportOutcome outcome = exportFrames(request, progress);
   context.console.endProgress();
-  context.console.print(fmt::format("wrote {} frame{} to \"{}\"", outcome.files.size(),
-                                    outcome.files.size() == 1 ? "" : "s", flags.out));
+  context.console.print(
+      fmt::format("wrote {} to \"{}\"", countText(outcome.files.size(), "frame"), flags.out));
   tellInterpolated(outcome.interpolated, context.console);
   return 0;
 }
@@ -118,6 +132,11 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
           "--frame-of", flags->frame_of,
           "Axes and unit of normals, depth and meshes: the capture's, or the world's (+Y up, metres)")
       ->type_name("NAME");
+  command->add_flag("--layers", flags->layers,
+                    "All channels of a camera and frame as layers of one linear EXR file, "
+                    "OUT/layers/CAMERA/FRAME.exr; a mesh stays a file");
+  command->add_flag("--skip-existing", flags->skip_existing,
+                    "Leave files that this command wrote from the same content as they are");
   command->add_option("--out", flags->out, "Folder for the pictures")->required()->type_name("FOLDER");
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);

@@ -141,6 +141,20 @@ std::string_view extensionOf(FileForm form) {
   return {};
 }
 
+std::vector<std::string> layerNames(const ChannelInfo& channel, std::string_view layer) {
+  if (channel.needs == ChannelNeeds::Mesh) throw Error(Error::Kind::Bug, "a mesh is no layer of a picture");
+  std::string prefix = fmt::format("{}.", layer);
+  std::replace(prefix.begin(), prefix.end() - 1, '.', '_');
+  if (channel.id == kRgbChannel) prefix.clear();
+  std::string_view components = channel.id == kAlphaChannel ? kCoverageName : "Y";
+  if (channel.quantity == Quantity::Color) components = "RGB";
+  if (channel.quantity == Quantity::Direction) components = "XYZ";
+  if (channel.quantity == Quantity::Length) components = "Z";
+  std::vector<std::string> names;
+  for (const char c : components) names.push_back(prefix + c);
+  return names;
+}
+
 Lack lackOf(const ChannelInfo& channel, const RenderScene& scene) {
   if (needsMaterials(channel)) {
     if (!allOf(scene, [](const RenderInstance& i) { return i.materials != nullptr; })) return Lack::Materials;

@@ -72,6 +72,14 @@ inline bool needsMaterials(const ChannelInfo& c) {
 }
 std::string_view extensionOf(FileForm form);  // "png"
 
+// A channel as a layer of one OpenEXR file that holds several: "LAYER.COMPONENT" as compositing programs read
+// it, with R G B, X Y Z, Z of a length, A of coverage, Y of another single value. Colour as photographed has
+// no layer name: it is what a program shows first. Dots of `layer` become '_', for they part layers. The mesh
+// is none: Error{Bug}.
+std::vector<std::string> layerNames(const ChannelInfo& channel, std::string_view layer);
+inline constexpr const char* kCoverageName =
+    "A";  // of the colour as photographed: the value of kAlphaChannel
+
 // What a scene does not have and the channel needs.
 enum class Lack { None, Materials, Light, Attribute };
 Lack lackOf(const ChannelInfo& channel, const RenderScene& scene);

@@ -5,130 +5,147 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <span>
 
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
-#include "core/math/color.h"
+#include "core/pipeline/file_digest.h"
 #include "core/scene/channel.h"
 #include "core/scene/environment.h"
 #include "core/scene/transform.h"
+#include "core/stages/picture_files.h"
+#include "core/stages/picture_source.h"
 
 namespace beam {
 namespace {
 
 namespace fs = std::filesystem;
 
-Image<u8vec3> bytesOf(const Planes& color, bool encode) {
-  Image<u8vec3> out(color.width, color.height, u8vec3(0), Encoding::Srgb);
-  for (std::size_t i = 0; i < out.pixels.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const float c = std::clamp(color.plane(k)[i], 0.0f, 1.0f);
-      out.pixels[i][k] = byteOf(encode ? srgbFromLinear(c) : c);
-    }
-  }
-  return out;
+fs::path pictureFile(const std::string& folder, const std::string& camera, const std::string& frame,
+                     FileForm form) {
+  return fs::path(folder) / camera / fmt::format("{}.{}", frame, extensionOf(form));
 }
 
-Image<std::uint8_t> bytesOf(const Planes& shares) {
-  Image<std::uint8_t> out(shares.width, shares.height);
-  for (std::size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = byteOf(shares.values[i]);
-  return out;
+fs::path meshFile(const std::string& frame) {
+  return fs::path(kMeshChannel) / fmt::format("{}.{}", frame, extensionOf(FileForm::Ply));
 }
 
-// Values of world axes and metres as the frame of the files has them. A turn leaves lengths as they are.
-Planes inFrame(const ChannelInfo& channel, const Planes& values, const Similarity3& frame_from_world) {
-  Planes out = values;
-  if (channel.quantity == Quantity::Direction) {
-    for (std::size_t i = 0; i < out.planeSize(); ++i) {
-      const dvec3 v =
-          frame_from_world.rotation * dvec3(values.plane(0)[i], values.plane(1)[i], values.plane(2)[i]);
-      for (int c = 0; c < 3; ++c) out.plane(c)[i] = static_cast<float>(v[c]);
-    }
-  } else if (channel.quantity == Quantity::Length && frame_from_world.scale != 1) {
-    for (float& v : out.values) v = static_cast<float>(frame_from_world.scale * v);
-  }
-  return out;
-}
-
-fs::path channelFile(const std::string& folder, const std::string& camera, const std::string& frame,
-                     const ChannelInfo& channel) {
-  const std::string name = fmt::format("{}.{}", frame, extensionOf(channel.file));
-  return channel.id == kMeshChannel ? fs::path(folder) / name : fs::path(folder) / camera / name;
-}
-
-std::string relitFolder(const fs::path& environment) {
+std::string relitName(const fs::path& environment) {
   return std::string(kRelightChannel) + "_" + environment.stem().string();
 }
 
-std::vector<std::string> relitFolders(const RenderRequest& request) {
-  std::vector<std::string> folders;
-  for (const fs::path& environment : request.environments) folders.push_back(relitFolder(environment));
-  return folders;
-}
-
-std::string colorStateOf(const ChannelInfo& channel) {
-  if (channel.quantity != Quantity::Color) return "data";
-  return channel.file == FileForm::Png ? "sRGB" : "scene-linear Rec.709";
-}
-
-void writeChannel(const fs::path& file, const ChannelInfo& channel, const Planes& values,
-                  const Similarity3& frame_from_world, const FileNotes& notes) {
-  const bool three = componentsOf(channel) == 3;
-  if (channel.file == FileForm::Png) {
-    if (three)
-      writePng(file, bytesOf(values, channel.encoding == Encoding::Linear), notes);
-    else
-      writePng(file, bytesOf(values), notes);
-    return;
+// Of every channel that is a picture, in order of the request: channel and name; relit ones once a panorama.
+std::vector<DrawnChannel> picturesOf(const RenderRequest& request) {
+  std::vector<DrawnChannel> pictures;
+  for (const std::string& id : request.channels) {
+    const ChannelInfo& channel = channelOf(id);
+    if (id == kMeshChannel) continue;
+    if (id != kRelightChannel) pictures.push_back({channel, id, nullptr});
+    if (id != kRelightChannel) continue;
+    for (const fs::path& environment : request.environments)
+      pictures.push_back({channel, relitName(environment), nullptr});
   }
-  const bool half = channel.file == FileForm::HalfExr;
-  writeExr(file, inFrame(channel, values, frame_from_world),
-           three ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"},
-           half ? ExrPrecision::Half : ExrPrecision::Float, notes);
+  return pictures;
+}
+
+// The layers of a file. Colour brings its coverage along, as a nameless alpha where none is asked for.
+std::vector<DrawnChannel> layersOf(const RenderRequest& request, const RendererAbilities& abilities) {
+  std::vector<DrawnChannel> layers = picturesOf(request);
+  const auto holds = [&](const char* id) {
+    return std::any_of(layers.begin(), layers.end(),
+                       [&](const DrawnChannel& d) { return d.channel.id == id; });
+  };
+  const ChannelInfo& alpha = channelOf(kAlphaChannel);
+  if (holds(kRgbChannel) && !holds(kAlphaChannel) && draws(abilities, alpha))
+    layers.push_back({alpha, {}, nullptr});
+  return layers;
+}
+
+// A file of pictures of one camera and frame: one channel, or the layers.
+struct PictureFile {
+  std::string folder;
+  FileForm form = FileForm::HalfExr;
+  std::vector<DrawnChannel> channels;  // without values
+};
+
+std::vector<PictureFile> pictureFilesOf(const RenderRequest& request, const RendererAbilities& abilities) {
+  std::vector<PictureFile> files;
+  if (request.layers) {
+    files.push_back({kLayersFolder, FileForm::HalfExr, layersOf(request, abilities)});
+    if (files[0].channels.empty()) files.clear();
+    return files;
+  }
+  for (DrawnChannel& d : picturesOf(request)) files.push_back({d.name, d.channel.file, {d}});
+  return files;
 }
 
 class ChannelWriter {
  public:
   ChannelWriter(const GaussianSequence& sequence, const RenderRequest& request, SceneRenderer& renderer)
-      : sequence_(sequence), request_(request), renderer_(renderer) {
+      : sequence_(sequence),
+        request_(request),
+        renderer_(renderer),
+        files_(pictureFilesOf(request, renderer.abilities())) {
     if (!request.world_frame) frame_from_world_ = sequence.captureFromWorld();
-    for (const std::string& id : request.channels) {
-      if (id == kMeshChannel)
-        mesh_ = true;
-      else if (id == kRelightChannel)
-        relit_ = &channelOf(id);
-      else
-        drawn_.push_back(channelOf(id));
-    }
+    mesh_ =
+        std::find(request.channels.begin(), request.channels.end(), kMeshChannel) != request.channels.end();
     if (const std::string lost = roundingWarning(frame_from_world_); mesh_ && !lost.empty())
       logWarning("{}", lost);
-    if (!relit_) return;
-    for (const fs::path& file : request.environments) {
-      lights_.push_back(
-          {relitFolder(file), std::make_shared<const Environment>(makeEnvironment(readRadiance(file)))});
+    const auto relit = std::find(request.channels.begin(), request.channels.end(), kRelightChannel) !=
+                       request.channels.end();
+    for (std::size_t e = 0; relit && e < request.environments.size(); ++e) {
+      const fs::path& file = request.environments[e];
+      lights_[relitName(file)] = {std::make_shared<const Environment>(makeEnvironment(readRadiance(file))),
+                                  request.written_by.empty() ? Digest{} : digestOfFile(file)};
     }
   }
 
   void frame(FrameIndex frame, Progress& progress) {
     const std::string& name = nameOf(sequence_, frame);
+    stamp_ = request_.written_by.empty() ? Digest{} : sequence_.stamp(frame).value_or(Digest{});
     if (mesh_) mesh(frame, name, progress);
-    if (drawn_.empty() && lights_.empty())
+    const std::vector<std::vector<const PictureFile*>> missing = missingFiles(name, progress);
+    const bool none = std::all_of(missing.begin(), missing.end(), [](const auto& m) { return m.empty(); });
+    if (none && (files_.empty() || request_.skip_existing))
       return progress.step(static_cast<std::int64_t>(request_.views.size()));
     const std::shared_ptr<const GaussianFrame> result = solvedFrame(sequence_, frame);
     if (result->interpolated) logInfo("frame {} is interpolated", name);
     RenderScene scene;
     scene.instances = {instanceOf(result, sequence_.renderMode())};
     requireWhatIsNeeded(scene, name);
-    for (const View& view : request_.views) {
-      pictures(scene, view, name, progress);
+    for (std::size_t v = 0; v < missing.size(); ++v) {
+      if (!missing[v].empty()) pictures(scene, request_.views[v], name, missing[v], progress);
       progress.step();
     }
   }
 
+  RenderedFiles done() const { return done_; }
+
  private:
+  // Of each view.
+  std::vector<std::vector<const PictureFile*>> missingFiles(const std::string& name,
+                                                            const Progress& progress) {
+    std::vector<std::vector<const PictureFile*>> missing(request_.views.size());
+    for (std::size_t v = 0; v < missing.size(); ++v) {
+      for (const PictureFile& file : files_) {
+        progress.check();
+        const View& view = request_.views[v];
+        if (isKept(pictureFile(file.folder, view.name, name, file.form), sourceOf(file, view, name)))
+          ++done_.kept;
+        else
+          missing[v].push_back(&file);
+      }
+    }
+    return missing;
+  }
+
+  bool isKept(const fs::path& file, const std::string& source) const {
+    return request_.skip_existing && isMadeFrom(request_.out / file, request_.written_by, source);
+  }
+
   // The light is the request's.
   void requireWhatIsNeeded(const RenderScene& scene, const std::string& name) const {
     for (const std::string& id : request_.channels) {
@@ -147,75 +164,158 @@ class ChannelWriter {
   }
 
   // Its folder is there then.
-  fs::path file(const std::string& folder, const std::string& camera, const std::string& name,
-                const ChannelInfo& channel) const {
-    const fs::path place = request_.out / channelFile(folder, camera, name, channel);
+  fs::path placeOf(const fs::path& file) const {
+    const fs::path place = request_.out / file;
     fs::create_directories(place.parent_path());
     return place;
   }
 
-  FileNotes notesOf(const ChannelInfo& channel, const std::string& folder, const std::string& camera,
-                    const std::string& frame) const {
-    if (request_.written_by.empty()) return {};
-    FileNotes notes = {{"Software", request_.written_by}, {"channel", folder}, {"frame", frame}};
+  const char* axes() const { return request_.world_frame ? "world" : "capture"; }
+
+  PictureSource sourceOf(const std::string& name) const {
+    return {.renderer = {},
+            .frame_stamp = stamp_,
+            .frame = name,
+            .frame_from_world = frame_from_world_,
+            .axes = axes(),
+            .channels = {kMeshChannel}};
+  }
+
+  std::string sourceOf(const PictureFile& file, const View& view, const std::string& name) const {
+    PictureSource source = sourceOf(name);
+    source.renderer = renderer_.abilities().id;
+    source.mode = sequence_.renderMode();
+    source.camera = &view.camera;
+    source.channels = {file.folder};
+    for (const DrawnChannel& d : file.channels) {
+      source.channels.push_back(d.name);
+      if (const auto light = lights_.find(d.name); light != lights_.end())
+        source.panoramas.push_back(light->second.digest);
+    }
+    return digestText(source);
+  }
+
+  // `channel`: empty of layers. Those of the file's own content follow.
+  FileNotes beginNotes(const std::string& channel, const std::string& frame,
+                       const std::string& camera) const {
+    FileNotes notes = {{"Software", request_.written_by}};
+    if (!channel.empty()) notes.emplace_back("channel", channel);
+    notes.emplace_back("frame", frame);
     if (!camera.empty()) notes.emplace_back("camera", camera);
-    if (channel.quantity != Quantity::Color || channel.id == kMeshChannel)
-      notes.emplace_back("axes", request_.world_frame ? "world" : "capture");
-    if (!channel.unit.empty()) notes.emplace_back("unit", lengthUnit(frame_from_world_));
-    if (channel.id == kMeshChannel) return notes;
-    notes.emplace_back("color_state", colorStateOf(channel));
-    if (channel.times_alpha) notes.emplace_back("alpha", "value x alpha, composited on black");
     return notes;
   }
 
-  void mesh(FrameIndex frame, const std::string& name, const Progress& progress) const {
+  FileNotes notesOf(const PictureFile& file, const View& view, const std::string& frame) const {
+    if (request_.written_by.empty()) return {};
+    FileNotes notes = beginNotes(request_.layers ? std::string() : file.folder, frame, view.name);
+    const auto any = [&](auto&& holds) {
+      return std::any_of(file.channels.begin(), file.channels.end(),
+                         [&](const DrawnChannel& d) { return holds(d.channel); });
+    };
+    if (any([](const ChannelInfo& c) { return c.quantity != Quantity::Color; }))
+      notes.emplace_back("axes", axes());
+    if (any([](const ChannelInfo& c) { return !c.unit.empty(); }))
+      notes.emplace_back("unit", lengthUnit(frame_from_world_));
+    if (!request_.layers) {
+      const ChannelInfo& channel = file.channels[0].channel;
+      notes.emplace_back("color_state", colorStateOf(channel));
+      if (channel.times_alpha) notes.emplace_back("alpha", "value x alpha, composited on black");
+    }
+    addSource(sourceOf(file, view, frame), notes);
+    return notes;
+  }
+
+  FileNotes meshNotes(const std::string& name, const std::string& source) const {
+    if (request_.written_by.empty()) return {};
+    FileNotes notes = beginNotes(kMeshChannel, name, {});
+    notes.emplace_back("axes", axes());
+    notes.emplace_back("unit", lengthUnit(frame_from_world_));
+    addSource(source, notes);
+    return notes;
+  }
+
+  static void addSource(const std::string& digest, FileNotes& notes) {
+    if (!digest.empty()) notes.emplace_back(kSourceNote, digest);
+  }
+
+  void mesh(FrameIndex frame, const std::string& name, const Progress& progress) {
+    const std::string source = digestText(sourceOf(name));
+    if (isKept(meshFile(name), source)) {
+      ++done_.kept;
+      return;
+    }
     const std::shared_ptr<const Mesh> m = sequence_.mesh(frame);
     if (!m && sequence_.content(frame).interpolated)
       return logInfo("frame {} is interpolated: it has no mesh", name);
     if (!m) throw Error(Error::Kind::Data, fmt::format("frame {} has no mesh yet: run Surface first", name));
-    const ChannelInfo& channel = channelOf(kMeshChannel);
-    writeMeshPly(file(kMeshChannel, {}, name, channel), transformed(*m, frame_from_world_),
-                 {.progress = &progress, .notes = notesOf(channel, kMeshChannel, {}, name)});
+    writeMeshPly(placeOf(meshFile(name)), transformed(*m, frame_from_world_),
+                 {.progress = &progress, .notes = meshNotes(name, source)});
+    ++done_.written;
   }
 
-  // One of each channel; `folders` name them.
-  void draw(const RenderScene& scene, const View& view, const std::string& name,
-            std::span<const ChannelInfo> channels, const std::vector<std::string>& folders,
+  void write(const PictureFile& file, const View& view, const std::string& name,
+             std::span<const DrawnChannel> drawn, const Progress& progress) {
+    const fs::path place = placeOf(pictureFile(file.folder, view.name, name, file.form));
+    const FileNotes notes = notesOf(file, view, name);
+    if (request_.layers)
+      writeLayers(place, drawn, frame_from_world_, notes, progress);
+    else
+      writePicture(place, drawn[0], frame_from_world_, notes);
+    ++done_.written;
+  }
+
+  // One load and draw: channels that no light touches, or one that a panorama lights.
+  void draw(const RenderScene& scene, const View& view, std::span<DrawnChannel* const> drawn,
             Progress& progress) {
+    std::vector<ChannelInfo> channels;
+    for (const DrawnChannel* d : drawn) channels.push_back(d->channel);
     renderer_.load(scene, progress);
     renderer_.draw(view.camera, channels, progress, [&](const RenderedPicture& picture) {
       if (!picture.final) return;
-      for (std::size_t i = 0; i < channels.size(); ++i) {
-        progress.check();
-        writeChannel(file(folders[i], view.name, name, channels[i]), channels[i], *picture.channels[i].values,
-                     frame_from_world_, notesOf(channels[i], folders[i], view.name, name));
-      }
+      for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i]->values = picture.channels[i].values;
     });
   }
 
-  void pictures(RenderScene scene, const View& view, const std::string& name, Progress& progress) {
-    std::vector<std::string> folders;
-    for (const ChannelInfo& c : drawn_) folders.push_back(c.id);
-    if (!drawn_.empty()) draw(scene, view, name, drawn_, folders, progress);
-    for (const Light& light : lights_) {
-      scene.environment = light.environment;
-      draw(scene, view, name, {relit_, 1}, {light.folder}, progress);
+  void pictures(RenderScene scene, const View& view, const std::string& name,
+                std::span<const PictureFile* const> files, Progress& progress) {
+    std::vector<std::vector<DrawnChannel>> drawn;
+    for (const PictureFile* file : files) drawn.push_back(file->channels);
+    std::vector<DrawnChannel*> unlit, lit;
+    for (std::vector<DrawnChannel>& channels : drawn) {
+      for (DrawnChannel& d : channels) (d.channel.id == kRelightChannel ? lit : unlit).push_back(&d);
+    }
+    const auto writeDone = [&] {
+      for (std::size_t f = 0; f < files.size(); ++f) {
+        const auto has = [](const DrawnChannel& d) { return d.values != nullptr; };
+        if (drawn[f].empty() || !std::all_of(drawn[f].begin(), drawn[f].end(), has)) continue;
+        progress.check();
+        write(*files[f], view, name, drawn[f], progress);
+        drawn[f].clear();
+      }
+    };
+    if (!unlit.empty()) draw(scene, view, unlit, progress);
+    writeDone();
+    for (DrawnChannel* const& d : lit) {
+      scene.environment = lights_.at(d->name).environment;
+      draw(scene, view, {&d, 1}, progress);
+      writeDone();
     }
   }
 
   struct Light {
-    std::string folder;
     std::shared_ptr<const Environment> environment;
+    Digest digest;  // of its file; of pictures that say nothing, none
   };
 
   const GaussianSequence& sequence_;
   const RenderRequest& request_;
   SceneRenderer& renderer_;
+  const std::vector<PictureFile> files_;
   Similarity3 frame_from_world_;
   bool mesh_ = false;
-  const ChannelInfo* relit_ = nullptr;  // asked for
-  std::vector<ChannelInfo> drawn_;      // what does not depend on the light
-  std::vector<Light> lights_;
+  std::map<std::string, Light> lights_;  // by the name of what they light
+  Digest stamp_;                         // of the frame at work
+  RenderedFiles done_;
 };
 
 void check(const RenderRequest& request, const RendererAbilities& abilities) {
@@ -232,37 +332,39 @@ void check(const RenderRequest& request, const RendererAbilities& abilities) {
   }
   if (abilities.needs_context)
     throw Error(Error::Kind::Bug, "render channels: a renderer that draws textures");
+  if (!request.layers) return;
+  const std::vector<DrawnChannel> layers = layersOf(request, abilities);
+  for (const View& view : request.views) {
+    if (!layers.empty())
+      requireLayers(request.out / kLayersFolder / view.name, layers, view.camera.width, view.camera.height);
+  }
 }
 
 }  // namespace
 
 std::vector<fs::path> channelFiles(const GaussianSequence& sequence, const RenderRequest& request) {
   std::vector<fs::path> files;
-  const auto add = [&](const std::string& folder, const std::string& camera, const ChannelInfo& channel) {
-    for (const FrameIndex frame : request.frames)
-      files.push_back(channelFile(folder, camera, nameOf(sequence, frame), channel));
+  const auto add = [&](const std::string& folder, FileForm form) {
+    for (const View& view : request.views) {
+      for (const FrameIndex frame : request.frames)
+        files.push_back(pictureFile(folder, view.name, nameOf(sequence, frame), form));
+    }
   };
   for (const std::string& id : request.channels) {
-    const ChannelInfo& channel = channelOf(id);
-    if (id == kMeshChannel) {
-      add(id, {}, channel);
-      continue;
-    }
-    std::vector<std::string> folders = {id};
-    if (id == kRelightChannel) folders = relitFolders(request);
-    for (const std::string& folder : folders) {
-      for (const View& view : request.views) add(folder, view.name, channel);
-    }
+    if (channelOf(id).id != kMeshChannel) continue;
+    for (const FrameIndex frame : request.frames) files.push_back(meshFile(nameOf(sequence, frame)));
   }
+  for (const PictureFile& file : pictureFilesOf(request, {})) add(file.folder, file.form);
   return files;
 }
 
-void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, SceneRenderer& renderer,
-                    Progress& progress) {
+RenderedFiles renderChannels(const GaussianSequence& sequence, const RenderRequest& request,
+                             SceneRenderer& renderer, Progress& progress) {
   check(request, renderer.abilities());
   progress.expect(static_cast<std::int64_t>(request.frames.size() * request.views.size()));
   ChannelWriter writer(sequence, request, renderer);
   for (const FrameIndex f : request.frames) writer.frame(f, progress);
+  return writer.done();
 }
 
 }  // namespace beam

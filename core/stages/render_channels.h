@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of solved frames as files, laid out as other tools expect them:
-// OUT/<channel>/<camera>/<frame>.<ext>. Used by `beam render`, by the evaluation and by the studio.
+// OUT/<channel>/<camera>/<frame>.<ext>, or all channels of a camera and frame as layers of
+// OUT/layers/<camera>/<frame>.exr; meshes as OUT/mesh/<frame>.ply. Used by `beam render`, by the evaluation
+// and by the studio.
 #pragma once
 
 #include <filesystem>
@@ -20,9 +22,12 @@ struct RenderRequest {
   std::vector<FrameIndex> frames;
   std::vector<std::filesystem::path> environments;  // for "relight": a folder relight_<stem> each
   bool world_frame = false;  // normals and meshes in world axes instead of the capture's
+  bool layers = false;       // one file a camera and frame (picture_files.h); a mesh stays its own file
+  // What is there, whole, and was made by `written_by` from what it would be made from now is left as it is.
+  bool skip_existing = false;
   std::filesystem::path out;
-  // What files say wrote them (io/written_by.h), beside camera, frame, channel, unit, axes and colour state;
-  // empty: they say nothing.
+  // What files say wrote them (io/written_by.h), beside camera, frame, channel, unit, axes, colour state and
+  // what they were made from (picture_source.h); empty: they say nothing.
   std::string written_by = {};
 };
 
@@ -30,9 +35,14 @@ struct RenderRequest {
 std::vector<std::filesystem::path> channelFiles(const GaussianSequence& sequence,
                                                 const RenderRequest& request);
 
-// Throws Error{Usage} for an unknown channel, one that the renderer does not draw, or relight without a
-// panorama; Error{Data} when a frame is not solved as far as a channel needs. The renderer draws no textures.
-void renderChannels(const GaussianSequence& sequence, const RenderRequest& request, SceneRenderer& renderer,
-                    Progress& progress);
+struct RenderedFiles {
+  std::size_t written = 0, kept = 0;  // kept: skip_existing found them
+};
+
+// Throws Error{Usage} for an unknown channel, one that the renderer does not draw, relight without a panorama
+// or two layers of one name; Error{Data} when a frame is not solved as far as a channel needs, or layers are
+// more than a file is read with. The renderer draws no textures.
+RenderedFiles renderChannels(const GaussianSequence& sequence, const RenderRequest& request,
+                             SceneRenderer& renderer, Progress& progress);
 
 }  // namespace beam

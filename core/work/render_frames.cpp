@@ -36,11 +36,14 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   pictures.frames = selectSolvedFrames(request.frames, *sequence, progress);
   pictures.environments = request.environments;
   pictures.world_frame = request.world_frame;
+  pictures.layers = request.layers;
+  pictures.skip_existing = request.skip_existing;
   pictures.out = request.out;
   pictures.written_by = writerOf(kCommand);
   requireFolderTarget(request.out, channelFiles(*sequence, pictures), {kCommand, request.force});
-  renderChannels(*sequence, pictures, renderer, progress);
-  return {pictures.views.size(), pictures.frames.size(), interpolatedOf(*sequence, pictures.frames)};
+  const RenderedFiles files = renderChannels(*sequence, pictures, renderer, progress);
+  return {pictures.views.size(), pictures.frames.size(), interpolatedOf(*sequence, pictures.frames),
+          files.written, files.kept};
 }
 
 }  // namespace beam

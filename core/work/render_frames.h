@@ -18,15 +18,18 @@ struct RenderFramesRequest {
   std::string cameras = "test";                 // of selectViews
   std::string frames = "all";  // of selectSolvedFrames; those between the ones of a scout too
   std::vector<std::filesystem::path> environments;  // for "relight"
-  bool world_frame = false;  // normals, depth and meshes in world axes and metres instead of the capture's
+  bool world_frame = false;    // normals, depth and meshes in world axes and metres instead of the capture's
+  bool layers = false;         // of RenderRequest
+  bool skip_existing = false;  // likewise
   std::filesystem::path out;
   bool force = false;   // of OutputRule
   bool strict = false;  // of WantedResults
 };
 
 struct RenderFramesOutcome {
-  std::size_t cameras = 0, frames = 0;    // that were drawn
+  std::size_t cameras = 0, frames = 0;    // that were asked for
   std::vector<std::string> interpolated;  // names of those frames that are interpolated, not solved
+  std::size_t written = 0, kept = 0;      // files; kept: skip_existing found them
 };
 
 // Throws Error{Usage} for words that choose nothing and a place that requireFolderTarget refuses, Error{Data}

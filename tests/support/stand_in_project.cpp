@@ -208,7 +208,10 @@ Project newStandIn(const fs::path& folder, const StandInSize& size) {
 }
 
 Project solvedStandIn(const fs::path& folder, const StandInSize& size, const RunRequest& request) {
-  const Project project = newStandIn(folder, size);
+  return solvedAgain(newStandIn(folder, size), size, request);
+}
+
+Project solvedAgain(const Project& project, const StandInSize& size, const RunRequest& request) {
   Runner runner;
   runner.start(project, request, makeCpuDevice());
   while (runner.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -29,5 +29,7 @@ Project newStandIn(const std::filesystem::path& folder, const StandInSize& size 
 // Likewise, with what `request` says solved: every frame.
 Project solvedStandIn(const std::filesystem::path& folder, const StandInSize& size = {},
                       const RunRequest& request = {});
+// The saved project with what is missing of it, as solvedStandIn leaves one.
+Project solvedAgain(const Project& project, const StandInSize& size = {}, const RunRequest& request = {});
 
 }  // namespace beam::testing
