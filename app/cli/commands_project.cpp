@@ -10,6 +10,7 @@
 #include "app/cli/answer.h"
 #include "app/cli/commands.h"
 #include "app/cli/run_flags.h"
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/pipeline/path_kind.h"
 #include "core/pipeline/project_report.h"
@@ -122,8 +123,9 @@ void addNewCommand(CLI::App& app, CommandContext& context) {
       const CaptureSet& capture = project.capture();
       tellPlacement(project, context.console);
       project.save();
-      context.console.print(fmt::format("made {} ({} cameras, {} frames)", a->project, capture.views.size(),
-                                        capture.frames.size()));
+      context.console.print(fmt::format("made {} ({}, {})", a->project,
+                                        countText(capture.views.size(), "camera"),
+                                        countText(capture.frames.size(), "frame")));
       return 0;
     };
   });

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/cli/commands.h"
+#include "core/base/count_text.h"
 #include "core/work/report.h"
 
 namespace beam {
@@ -25,8 +26,8 @@ int runReport(const ReportFlags& flags, CommandContext& context) {
   const ReportOutcome outcome = report(request, *device, progress);
   context.console.endProgress();
   for (const std::string& finding : outcome.findings) context.console.warning(finding);
-  context.console.print(fmt::format("wrote the report of {} frame{} to \"{}\"", outcome.frames,
-                                    outcome.frames == 1 ? "" : "s", flags.out));
+  context.console.print(
+      fmt::format("wrote the report of {} to \"{}\"", countText(outcome.frames, "frame"), flags.out));
   return 0;
 }
 

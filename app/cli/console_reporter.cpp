@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/exit_codes.h"
+#include "core/base/count_text.h"
 #include "core/base/duration_text.h"
 
 namespace beam {
@@ -43,7 +44,7 @@ void ConsoleReporter::show(const StepFinished& e) {
 
 void ConsoleReporter::tellReused() {
   for (const auto& [stage, results] : reused_)
-    console_.info(fmt::format("{}: {} result{} reused", stage, results, results == 1 ? "" : "s"));
+    console_.info(fmt::format("{}: {} reused", stage, countText(results, "result")));
   reused_.clear();
 }
 
@@ -62,14 +63,15 @@ void ConsoleReporter::show(const JobFinished& e) {
   for (const std::string& note : e.notes) answers_ ? console_.print(note) : console_.info(note);
   switch (e.outcome) {
     case JobOutcome::Done:
-      console_.info(
-          e.computed == 0
-              ? fmt::format("nothing to compute: all {} results are there already (reused)", e.reused)
-              : fmt::format("done in {}: {} steps computed, {} reused", durationText(e.seconds), e.computed,
-                            e.reused));
+      console_.info(e.computed == 0
+                        ? fmt::format("nothing to compute: {}{} there already (reused)",
+                                      e.reused == 1 ? "" : "all ",
+                                      countText(e.reused, "result is", "results are"))
+                        : fmt::format("done in {}: {} computed, {} reused", durationText(e.seconds),
+                                      countText(e.computed, "step"), e.reused));
       break;
     case JobOutcome::DoneWithFailures:
-      console_.error(fmt::format("{} of the frames failed ({}); the others are done", e.failed.size(),
+      console_.error(fmt::format("{} failed ({}); the others are done", countText(e.failed.size(), "frame"),
                                  namesOf(e.failed)));
       break;
     case JobOutcome::Cancelled:

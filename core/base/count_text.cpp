@@ -16,9 +16,13 @@ std::string grouped(std::int64_t n) {
 
 }  // namespace
 
+std::string nounText(std::int64_t n, std::string_view one, std::string_view many) {
+  if (n == 1) return std::string(one);
+  return many.empty() ? fmt::format("{}s", one) : std::string(many);
+}
+
 std::string countText(std::int64_t n, std::string_view one, std::string_view many) {
-  if (n == 1) return fmt::format("1 {}", one);
-  return many.empty() ? fmt::format("{} {}s", grouped(n), one) : fmt::format("{} {}", grouped(n), many);
+  return fmt::format("{} {}", grouped(n), nounText(n, one, many));
 }
 
 }  // namespace beam

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <set>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/capture_description.h"
@@ -189,12 +190,12 @@ void warnOfGaps(CaptureDescription& d, const PictureTable& files, const std::vec
     const std::string& name = d.cameras[v].name;
     if (!no_picture.empty() && d.cameras[v].split == Split::Train) {
       d.warnings.push_back(fmt::format("camera {} has no picture of {} {}; solved without it", name,
-                                       no_picture.size() == 1 ? "frame" : "frames", shortList(no_picture)));
+                                       nounText(no_picture.size(), "frame"), shortList(no_picture)));
     }
     if (!no_mask.empty()) {
       d.warnings.push_back(
           fmt::format("camera {} has no mask for {} {}; expected one as for the other cameras", name,
-                      no_mask.size() == 1 ? "frame" : "frames", shortList(no_mask)));
+                      nounText(no_mask.size(), "frame"), shortList(no_mask)));
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/io/file.h"
 
@@ -17,7 +18,7 @@ constexpr std::size_t kKeyDigits = 32;
 std::string summaryOf(const ProjectDocument& document) {
   const std::size_t n = document.settings.size();
   if (n == 0) return fmt::format("preset {}, no setting differs", document.preset);
-  return fmt::format("preset {}, {} setting{}", document.preset, n, n == 1 ? " differs" : "s differ");
+  return fmt::format("preset {}, {}", document.preset, countText(n, "setting differs", "settings differ"));
 }
 
 std::chrono::system_clock::time_point timeOf(const fs::path& file) {
@@ -102,9 +103,9 @@ std::string historyAdvice(const fs::path& project) {
            "project.json here to have the results again";
   }
   return fmt::format(
-      "history/ has {} readable version{} of it: restore one in the studio, or copy it over "
+      "history/ has {} of it: restore one in the studio, or copy it over "
       "\"{}\"",
-      n, n == 1 ? "" : "s", (project / "project.json").string());
+      countText(n, "readable version"), (project / "project.json").string());
 }
 
 ProjectDocument readProjectDocument(const fs::path& project) {

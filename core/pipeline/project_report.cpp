@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/count_text.h"
 #include "core/pipeline/pending_reason.h"
 
 namespace beam {
@@ -44,8 +45,8 @@ std::string stepText(const Project& project, const StepId& id, const StepInfo& s
     const bool few_words = state == StepState::Pending || state == StepState::NotNeeded;
     const bool counted = all || few_words || names.size() > 12;
     text += fmt::format("{}{} {}", text.empty() ? "" : "; ", toText(state),
-                        all       ? std::string("(all frames)")
-                        : counted ? fmt::format("({} frames)", names.size())
+                        all       ? std::string(names.size() == 1 ? "(the frame)" : "(all frames)")
+                        : counted ? fmt::format("({})", countText(names.size(), "frame"))
                                   : fmt::format("{}", fmt::join(names, ", ")));
   }
   return text;
@@ -174,9 +175,10 @@ const char* toText(StepState state) {
 
 std::string statusText(const Project& project) {
   std::string text =
-      fmt::format("project {}{}\ncapture {} ({} cameras, {} frames)\npreset {}\n", project.name(),
+      fmt::format("project {}{}\ncapture {} ({}, {})\npreset {}\n", project.name(),
                   project.readOnly() ? " (read-only)" : "", project.captureFolder().string(),
-                  project.capture().views.size(), project.capture().frames.size(), project.document().preset);
+                  countText(project.capture().views.size(), "camera"),
+                  countText(project.capture().frames.size(), "frame"), project.document().preset);
   for (const auto& [key, value] : project.document().settings)
     text += fmt::format("  {} = {}\n", key, toText(value));
   text += takesText(project);

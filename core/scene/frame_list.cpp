@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/word_list.h"
 #include "core/scene/gaussian_sequence.h"
@@ -56,7 +57,8 @@ Span parseSpan(std::string_view item, const std::map<long long, FrameIndex>& num
 // "0 to 9" of the numbers that the capture has.
 std::string numbersText(const std::map<long long, FrameIndex>& by_number) {
   if (by_number.empty()) return "no numbered frames";
-  return fmt::format("{} frames, {} to {}", by_number.size(), by_number.begin()->first,
+  if (by_number.size() == 1) return fmt::format("frame {} alone", by_number.begin()->first);
+  return fmt::format("{}, {} to {}", countText(by_number.size(), "frame"), by_number.begin()->first,
                      by_number.rbegin()->first);
 }
 

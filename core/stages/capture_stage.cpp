@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/file.h"
@@ -76,10 +77,8 @@ class CaptureStage final : public StageOf<CaptureOptions> {
     int train = 0;
     for (const View& view : c.capture.views) train += view.split == Split::Train;
     if (train < 2) {
-      throw Error(Error::Kind::Data,
-                  fmt::format("the capture has {} training cameras, at least 2 are needed; hold "
-                              "fewer out",
-                              train));
+      throw Error(Error::Kind::Data, fmt::format("the capture has {}, at least 2 are needed; hold fewer out",
+                                                 countText(train, "training camera")));
     }
     c.scores["training_cameras"] = train;
     c.scores["test_cameras"] = static_cast<double>(c.capture.views.size()) - train;
@@ -101,8 +100,8 @@ class CaptureStage final : public StageOf<CaptureOptions> {
               [](const ScreenedView& a, const ScreenedView& b) { return a.camera < b.camera; });
     const std::string& frame = c.capture.frames[static_cast<std::size_t>(c.frame.value)];
     for (const ScreenedView& v : kept.left_out) {
-      logWarning("frame {}: camera {} {}; the frame is fitted without it, from {} of {} cameras", frame,
-                 v.camera, v.text, kept.cameras - kept.left_out.size(), kept.cameras);
+      logWarning("frame {}: camera {} {}; the frame is fitted without it, from {} of {}", frame, v.camera,
+                 v.text, kept.cameras - kept.left_out.size(), countText(kept.cameras, "camera"));
     }
     for (const ScreenedView& v : kept.suspects) {
       logWarning(

@@ -3,6 +3,7 @@
 
 #include <mutex>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/render/cpu/cpu_rasterizer.h"
@@ -59,7 +60,7 @@ class CpuDevice final : public ComputeDevice {
   DeviceInfo info() const override {
     const std::int64_t supported = hwy::SupportedTargets();
     const char* set = (supported & HWY_AVX3) ? "AVX-512" : (supported & HWY_AVX2) ? "AVX2" : "scalar";
-    return {"cpu", fmt::format("CPU, {} threads, {}", threadCount(), set)};
+    return {"cpu", fmt::format("CPU, {}, {}", countText(threadCount(), "thread"), set)};
   }
   std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc& desc) override {
     return makeCpuRasterizer(desc);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/field_text.h"
 #include "core/base/fields_json.h"
@@ -133,6 +134,15 @@ TEST(Fields, ANumberThatNoIntegerHoldsDoesNotWrap) {
   EXPECT_EQ(std::get<double>(parseFieldValue("4294967297")), 4294967297.0);
   EXPECT_EQ(std::get<double>(parseFieldValue("-4294967297")), -4294967297.0);
   EXPECT_EQ(std::get<int>(parseFieldValue("2147483647")), 2147483647);
+}
+
+TEST(CountText, SaysOneAndMany) {
+  EXPECT_EQ(countText(1, "frame"), "1 frame");
+  EXPECT_EQ(countText(0, "frame"), "0 frames");
+  EXPECT_EQ(countText(std::size_t{1200}, "entry", "entries"), "1,200 entries");
+  EXPECT_EQ(countText(1, "file was", "files were"), "1 file was");
+  EXPECT_EQ(countText(-1234567, "step"), "-1,234,567 steps");
+  EXPECT_EQ(nounText(1, "frame") + " " + nounText(2, "frame"), "frame frames");
 }
 
 TEST(Progress, PartsCoverTheirShareAndReportsNeverGoBack) {
