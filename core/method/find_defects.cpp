@@ -9,12 +9,14 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/count_text.h"
 #include "core/math/statistics.h"
 
 namespace beam {
 namespace {
 
 constexpr std::size_t kFewestOthers = 3;  // cameras a median needs to say what is usual
+constexpr int kFewestLagged = 2;          // photographs that a lag is read from
 constexpr double kSmallest = 1e-4;
 constexpr double kStill = 0.5;  // mean squared difference of thumbnails, grey levels: noise, no motion
 
@@ -58,8 +60,8 @@ class DefectFinder {
     for (const auto& [camera, scores] : cameras_) {
       black(camera, scores);
       frozen(camera, scores);
-      late(camera, scores);
     }
+    late();
     outliers(DefectKind::Blurred);
     outliers(DefectKind::Exposure);
     std::stable_sort(found_.begin(), found_.end(), [](const Defect& a, const Defect& b) {
@@ -98,9 +100,10 @@ class DefectFinder {
     }
     for (const auto& [camera, at] : gone) {
       add(DefectKind::Missing, camera, at, static_cast<double>(at.size()),
-          fmt::format("has no readable picture in {} of {} frames; the frames were solved without it. Copy "
-                      "the missing pictures from the camera, or leave it",
-                      at.size(), frames_.size()));
+          fmt::format("has no readable picture in {} of {}; {} solved without it. Copy the missing pictures "
+                      "from the camera, or leave it",
+                      at.size(), countText(frames_.size(), "frame"),
+                      nounText(at.size(), "the frame was", "the frames were")));
     }
   }
 
@@ -112,9 +115,9 @@ class DefectFinder {
     }
     if (at.empty()) return;
     add(DefectKind::Black, camera, at, luma,
-        fmt::format("is black in {} frame{} (mean luma {:.3f} where the render has more than {:.2f}). Remove "
+        fmt::format("is black in {} (mean luma {:.3f} where the render has more than {:.2f}). Remove "
                     "those pictures from the capture and run the frames again",
-                    at.size(), at.size() == 1 ? "" : "s", luma, 3 * limits_.black_luma));
+                    countText(at.size(), "frame"), luma, 3 * limits_.black_luma));
   }
 
   // The same picture twice while most other cameras saw something move.
@@ -133,9 +136,9 @@ class DefectFinder {
     }
     if (at.empty()) return;
     add(DefectKind::Frozen, camera, at, static_cast<double>(at.size()),
-        fmt::format("repeats the picture before in {} frame{} while the others moved. Remove the repeated "
+        fmt::format("repeats the picture before in {} while the others moved. Remove the repeated "
                     "pictures from the capture and run the frames again",
-                    at.size(), at.size() == 1 ? "" : "s"));
+                    countText(at.size(), "frame")));
   }
 
   // Nothing: the frame before has no picture.
@@ -162,10 +165,12 @@ class DefectFinder {
   }
 
   // Mean difference between the photographs and the renders `lag` frames before, and for the same photographs
-  // at no lag.
-  std::pair<double, double> differences(const CameraScores& scores, const std::vector<Telling>& telling,
-                                        int lag) const {
-    double lagged = 0, own = 0, n = 0;
+  // at no lag; nothing where too few photographs have such a render: one alone tells that its own render is
+  // poor, and a take of two frames has no more.
+  std::optional<std::pair<double, double>> differences(const CameraScores& scores,
+                                                       const std::vector<Telling>& telling, int lag) const {
+    double lagged = 0, own = 0;
+    int n = 0;
     for (const Telling& t : telling) {
       const auto other = at_.find(frames_[t.frame].index - lag);
       const ViewScore* there = other == at_.end() ? nullptr : scores[other->second];
@@ -174,21 +179,38 @@ class DefectFinder {
       own += t.own;
       ++n;
     }
-    return n > 0 ? std::pair(lagged / n, own / n) : std::pair(0.0, 0.0);
+    if (n < kFewestLagged) return std::nullopt;
+    return std::pair(lagged / n, own / n);
   }
 
-  void late(const std::string& camera, const CameraScores& scores) {
-    int best_lag = 0;
-    double best = limits_.late_gain;
+  // By how many frames, and what the difference to the renders of that moment is of that to its own.
+  struct Lag {
+    int frames = 0;  // 0: none
+    double share = 1;
+  };
+  Lag lagOf(const CameraScores& scores) const {
+    Lag best{0, limits_.late_gain};
     const std::vector<Telling> telling = tellingOf(scores);
     for (int lag = -limits_.most_late; lag <= limits_.most_late; ++lag) {
       if (lag == 0) continue;
-      const auto [lagged, own] = differences(scores, telling, lag);
-      if (own < kStill || lagged >= best * own) continue;
-      best = lagged / own;
-      best_lag = lag;
+      const auto found = differences(scores, telling, lag);
+      if (!found || found->second < kStill || found->first >= best.share * found->second) continue;
+      best = {lag, found->first / found->second};
     }
-    if (best_lag == 0) return;
+    return best;
+  }
+
+  // Renders follow what most cameras saw: where most seem to be off, it is the renders that are.
+  void late() {
+    std::vector<std::pair<const std::string*, Lag>> accused;
+    for (const auto& [camera, scores] : cameras_) {
+      if (const Lag lag = lagOf(scores); lag.frames != 0) accused.emplace_back(&camera, lag);
+    }
+    if (2 * accused.size() > cameras_.size()) return;
+    for (const auto& [camera, lag] : accused) addLate(*camera, cameras_.at(*camera), lag);
+  }
+
+  void addLate(const std::string& camera, const CameraScores& scores, const Lag& lag) {
     std::vector<std::size_t> at;
     for (std::size_t f = 0; f < scores.size(); ++f) {
       if (scores[f]) at.push_back(f);
@@ -196,16 +218,15 @@ class DefectFinder {
     // A camera that took part in the fit has drawn the renders towards its own moment.
     const bool fitted = std::any_of(
         at.begin(), at.end(), [&](std::size_t f) { return !scores[f]->held_out && !scores[f]->left_out; });
-    const int count = std::abs(best_lag);
-    add(DefectKind::Late, camera, at, best_lag,
-        fmt::format(
-            "is {}{} frame{} {}: its photographs differ {:.0f} % less from the renders of that moment "
-            "than from their own. {}",
-            fitted ? "at least " : "", count, count == 1 ? "" : "s", best_lag > 0 ? "late" : "early",
-            100 * (1 - best),
-            fitted ? "It took part in the fit, which hides a part: hold it out with --hold-out, which "
-                     "also gives the whole number"
-                   : "Shift its pictures by as many"));
+    add(DefectKind::Late, camera, at, lag.frames,
+        fmt::format("is {}{} {}: its photographs differ {:.0f} % less from the renders of that moment "
+                    "than from their own. {}",
+                    fitted ? "at least " : "", countText(std::abs(lag.frames), "frame"),
+                    lag.frames > 0 ? "late" : "early", 100 * (1 - lag.share),
+                    fitted
+                        ? "It took part in the fit, which hides a part: hold it out with --hold-out, which "
+                          "also gives the whole number"
+                        : "Shift its pictures by as many"));
   }
 
   // What a camera's photograph has of the render's sharpness or brightness, against the median camera.
@@ -241,7 +262,7 @@ class DefectFinder {
     std::vector<double> factors;
     for (const auto& [f, factor] : list) at.push_back(f), factors.push_back(factor);
     const double factor = median(factors);
-    const std::string where = fmt::format("in {} of {} frames", at.size(), frames_.size());
+    const std::string where = fmt::format("in {} of {}", at.size(), countText(frames_.size(), "frame"));
     add(kind, camera, at, factor,
         kind == DefectKind::Blurred
             ? fmt::format("is blurred {}: {:.0f} % of the sharpness that the other cameras have against the "

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds cameras and moments of a capture that do not fit the others, from the scores of solved frames; needs
 // no truth. Every rule compares a camera with the other cameras of the same frame, so that a dark scene or a
-// soft subject accuses nobody. Pure functions of the scores.
+// soft subject accuses nobody. Lateness takes at least three frames in a row and is said of at most half of
+// the cameras. Pure functions of the scores.
 #pragma once
 
 #include <span>

@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "core/base/count_text.h"
+
 namespace beam {
 namespace {
 
@@ -38,8 +40,6 @@ std::string figures(const FitQuality& q) {
   return text;
 }
 
-std::string frameCount(int n) { return fmt::format("{} frame{}", n, n == 1 ? "" : "s"); }
-
 }  // namespace
 
 std::vector<LeftOutCamera> collectLeftOut(std::span<const ScreenedFrame> frames) {
@@ -67,7 +67,7 @@ std::string toText(const LeftOutCamera& c, std::span<const Defect> defects) {
     if (c.kind != ScreenKind::Outline || d.camera != c.camera || d.kind != DefectKind::Late) continue;
     why += fmt::format("; it {}", d.text.substr(0, d.text.find(':')));
   }
-  return fmt::format("camera {} in frame{} {}: {}", c.camera, c.frames.size() == 1 ? "" : "s",
+  return fmt::format("camera {} in {} {}: {}", c.camera, nounText(c.frames.size(), "frame"),
                      rangesText(c.frames, c.indices), why);
 }
 
@@ -91,13 +91,13 @@ LeftOutLoss lossOf(std::span<const ScoredFrame> frames) {
 
 std::string toText(const LeftOutLoss& loss) {
   if (loss.of == 0) return {};
-  std::string text =
-      fmt::format("{} fitted with cameras left out, from at least {} of {} views: mean PSNR {}",
-                  loss.incomplete.frames == 1 ? "1 frame was" : frameCount(loss.incomplete.frames) + " were",
-                  loss.least_fitted, loss.of, figures(loss.incomplete));
+  std::string text = fmt::format("{} fitted with cameras left out, from at least {} of {}: mean PSNR {}",
+                                 countText(loss.incomplete.frames, "frame was", "frames were"),
+                                 loss.least_fitted, countText(loss.of, "view"), figures(loss.incomplete));
   if (loss.complete.frames == 0)
     return text + ". No solved frame is complete, so there is none of this take to compare with.";
-  text += fmt::format("; {} with every camera: {}", frameCount(loss.complete.frames), figures(loss.complete));
+  text += fmt::format("; {} with every camera: {}", countText(loss.complete.frames, "frame"),
+                      figures(loss.complete));
   if (loss.incomplete.held_out_frames > 0 && loss.complete.held_out_frames > 0) {
     text += fmt::format(". The loss shows in the held-out views: {:+.2f} dB",
                         loss.incomplete.held_out - loss.complete.held_out);

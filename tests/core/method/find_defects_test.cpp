@@ -122,6 +122,39 @@ TEST(FindDefects, LatenessIsCountedInFramesOfTheCapture) {
   EXPECT_EQ(found[0].figure, 2);
 }
 
+// The renders of the second frame are poor: they fit no photograph of their own moment.
+TEST(FindDefects, ATakeOfTwoFramesTellsNothingOfLateness) {
+  std::vector<Frame> frames = goodFrames();
+  frames.resize(2);
+  for (int c = 0; c < kCameras; ++c) frames[1].views[c].render_thumb = good(c, -4).render_thumb;
+  for (int c = 0; c < kCameras; ++c) frames[0].views[c].render_thumb = good(c, 1).render_thumb;
+  EXPECT_TRUE(defectsOf(frames).empty());
+}
+
+TEST(FindDefects, WhereMostCamerasSeemLateNoneIs) {
+  for (const int late : {kCameras / 2, kCameras / 2 + 1}) {
+    std::vector<Frame> frames = goodFrames();
+    for (int f = 0; f < kFrames; ++f) {
+      for (int c = 0; c < late; ++c) frames[f].views[c].photo_thumb = good(c, f - 2).photo_thumb;
+    }
+    EXPECT_EQ(defectsOf(frames).size(), late > kCameras / 2 ? 0u : static_cast<std::size_t>(late));
+  }
+}
+
+TEST(FindDefects, SayOneFrameAndTwoFrames) {
+  for (const int gone : {1, 2}) {
+    std::vector<Frame> frames = goodFrames();
+    for (int f = 0; f < gone; ++f) {
+      frames[f].views.erase(frames[f].views.begin() + 4);
+      frames[f].missing = {"cam4"};
+    }
+    const std::vector<Defect> found = defectsOf(frames);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_THAT(found[0].text, HasSubstr(gone == 1 ? "in 1 of 10 frames; the frame was solved"
+                                                   : "in 2 of 10 frames; the frames were solved"));
+  }
+}
+
 TEST(FindDefects, NamesAFrozenPictureOnlyWhileTheOthersMove) {
   std::vector<Frame> frames = goodFrames();
   const auto freeze = [&](int camera) {
