@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/json_words.h"
 #include "core/base/log.h"
@@ -16,6 +17,7 @@
 #include "core/work/evaluate_over_time.h"
 #include "core/work/last_solved.h"
 #include "core/work/report_page.h"
+#include "core/work/score_words.h"
 
 namespace beam {
 namespace {
@@ -28,14 +30,26 @@ std::vector<std::pair<std::string, std::string>> factsOf(const Project& project)
                                       [](const View& v) { return v.split == Split::Test; });
   const std::size_t train = capture.views.size() - static_cast<std::size_t>(held_out);
   std::vector<std::pair<std::string, std::string>> facts = {
-      {"Capture", fmt::format("{}: {} training and {} held-out cameras, {} frames, {}", capture.name, train,
-                              held_out, capture.frames.size(), project.imported().layout)},
+      {"Capture", fmt::format("{}: {} and {}, {}, {}", capture.name, countText(train, "training camera"),
+                              countText(held_out, "held-out camera"),
+                              countText(capture.frames.size(), "frame"), project.imported().layout)},
       {"Preset", project.document().preset}};
   for (const StageInfo& stage : project.setup().stages.infos()) {
     const std::string reason = project.blockedReason(stage.id);
     if (!reason.empty()) facts.emplace_back(stage.title, reason);
   }
   return facts;
+}
+
+// Those that differ from the preset, as they are in force.
+std::vector<ReportSetting> settingsOf(const Project& project) {
+  const auto& differing = project.document().settings;
+  std::vector<ReportSetting> settings;
+  for (const Field& f : project.fields()) {
+    if (differing.contains(f.info.name))
+      settings.push_back({f.info.label, f.info.name, toText(f.value), f.info.unit});
+  }
+  return settings;
 }
 
 // First, middle, last and worst of the frames with results, in order of time.
@@ -94,7 +108,7 @@ ScoreTable evaluationOf(const Project& project) {
 void addScore(QualityHistory& history, const std::string& frame, const std::string& name, double value) {
   const auto found = std::find_if(history.frames.begin(), history.frames.end(),
                                   [&](const FrameQuality& q) { return q.name == frame; });
-  if (found != history.frames.end()) found->scores["evaluate." + name] = value;
+  if (found != history.frames.end()) found->scores[kEvaluateCurves + name] = value;
 }
 
 // One figure a map is enough for a curve; the table has them all.
@@ -137,7 +151,8 @@ std::vector<std::string> findingsOf(const QualityHistory& history) {
     findings.push_back(fmt::format("left out of the fit: {}", toText(c, history.defects)));
   if (std::string loss = toText(history.loss); !loss.empty()) findings.push_back(std::move(loss));
   for (const Defect& d : history.defects)
-    findings.push_back(fmt::format("camera {} {} (frames {})", d.camera, d.text, fmt::join(d.frames, ", ")));
+    findings.push_back(fmt::format("camera {} {} ({} {})", d.camera, d.text,
+                                   nounText(d.frames.size(), "frame"), fmt::join(d.frames, ", ")));
   return findings;
 }
 
@@ -148,8 +163,15 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
   const LastSolved last = lastSolved(request.project, {.strict = request.strict}, progress);
   const Project& project = last.project;
   const auto sequence = sequenceOf(project, Shows::Solved);
-  ReportPage page{
-      project.name(), kProgramVersion, factsOf(project), {}, sequence->frames().size(), {}, {}, {}};
+  ReportPage page{project.name(),
+                  kProgramVersion,
+                  project.setup().stages.infos(),
+                  factsOf(project),
+                  settingsOf(project),
+                  sequence->frames().size(),
+                  {},
+                  {},
+                  {}};
   page.history = qualityHistory(project, progress);
   if (page.history.frames.empty()) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
@@ -160,7 +182,6 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
                             fmt::format("these results are not of the settings in force; "
                                         "since they were made: {}",
                                         fmt::join(last.changes, ", ")));
-  for (const auto& [key, value] : project.document().settings) page.settings.emplace_back(key, toText(value));
   addEvaluatedFrames(project, page.history);
   {
     Progress part = progress.part(0.5, "compare frames");

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/count_text.h"
 #include "core/base/duration_text.h"
 #include "core/io/written_by.h"
+#include "core/stages/step_ids.h"
 #include "core/work/report_style.h"
+#include "core/work/score_words.h"
 #include "core/work/svg_chart.h"
 
 namespace beam {
@@ -108,14 +111,17 @@ class PageWriter {
     std::size_t failed = 0, scored = 0;
     for (const FrameQuality& f : h_.frames) failed += !f.failures.empty(), scored += !f.views.empty();
     out_ += "<div class=\"tiles\">";
-    tile(fmt::format("{} of {}", scored, page_.frames_in_capture), "frames solved and scored");
-    if (failed > 0) tile(std::to_string(failed), "frames failed", "bad");
+    tile(fmt::format("{} of {}", scored, page_.frames_in_capture),
+         nounText(page_.frames_in_capture, "frame solved and scored", "frames solved and scored"));
+    if (failed > 0) tile(std::to_string(failed), nounText(failed, "frame failed", "frames failed"), "bad");
     for (const bool held_out : {false, true}) {
       const auto [psnr, n] = meanPsnr(held_out);
       if (n > 0) tile(fmt::format("{:.2f} dB", psnr), held_out ? "PSNR, held out" : "PSNR, training views");
     }
     if (!worst_.empty()) tile(frames_[worst_.front()], "worst frame");
-    tile(std::to_string(h_.defects.size()), "findings about the capture", h_.defects.empty() ? "" : "bad");
+    tile(std::to_string(h_.defects.size()),
+         nounText(h_.defects.size(), "finding about the capture", "findings about the capture"),
+         h_.defects.empty() ? "" : "bad");
     tile(durationText(h_.seconds), "computing time");
     tile(fmt::format("{:.1f} GB", h_.peak_memory_bytes / 1e9), "peak memory");
     out_ += "</div>\n";
@@ -167,8 +173,8 @@ class PageWriter {
     for (const FrameQuality& f : h_.frames) {
       for (const auto& [step, message] : f.failures) {
         ++count;
-        list += fmt::format("<li>Frame {}, {}: {}</li>\n", escapedHtml(f.name), escapedHtml(step.text()),
-                            escapedHtml(message));
+        list += fmt::format("<li>Frame {}, {}: {}</li>\n", escapedHtml(f.name),
+                            escapedHtml(titleOfStep(page_.stages, step)), escapedHtml(message));
       }
     }
     if (count > 0) out_ += "<ul class=\"failures\">" + list + "</ul>\n";
@@ -205,7 +211,7 @@ class PageWriter {
 
   void secondsCurve() {
     Chart c = chart("Computing time", "s");
-    ChartSeries s{"seconds", {}};
+    ChartSeries s{"Computing time", {}};
     for (std::size_t f = 0; f < h_.frames.size(); ++f) {
       double sum = 0;
       for (const auto& [step, seconds] : h_.frames[f].seconds) sum += seconds;
@@ -249,7 +255,9 @@ class PageWriter {
       return frames_.size() < 2 ? kWidth / 2
                                 : 2 + (kWidth - 4) * static_cast<double>(f) / (frames_.size() - 1.0);
     };
-    const auto y = [&](double v) { return 2 + (kHeight - 4) * (high - v) / std::max(1e-9, high - low); };
+    const auto y = [&](double v) {
+      return high > low ? 2 + (kHeight - 4) * (high - v) / (high - low) : kHeight / 2;
+    };
     std::string path;
     for (const auto& [f, v] : row.over_time)
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x(f), y(v));
@@ -264,7 +272,8 @@ class PageWriter {
     if (row.held_out) return "held out";
     if (row.left_out == 0) return "training";
     const auto frames = static_cast<std::size_t>(row.n);
-    return row.left_out == frames ? "left out" : fmt::format("training, left out of {}", row.left_out);
+    return row.left_out == frames ? "left out"
+                                  : fmt::format("training, left out of {}", countText(row.left_out, "frame"));
   }
 
   void cameras() {
@@ -328,10 +337,10 @@ class PageWriter {
     section("Last evaluation", "As beam evaluate wrote it, means over pictures.");
     static constexpr std::pair<const char*, int> kColumns[] = {
         {"psnr", 2}, {"ssim", 4}, {"psnr_mask", 2}, {"pictures", 0}};
-    out_ += "<table>" + head({"Map", "PSNR, dB", "SSIM", "PSNR in mask", "Pictures", "Other figures"}) +
+    out_ += "<table>" + head({"Map", "PSNR, dB", "SSIM", "PSNR in mask, dB", "Pictures", "Other figures"}) +
             "<tbody>";
     for (const auto& [map, scores] : page_.evaluation) {
-      out_ += "<tr>" + cell(map, "name");
+      out_ += "<tr>" + cell(mapTitle(map), "name");
       std::map<std::string, double> others = scores;
       for (const auto& [name, digits] : kColumns) {
         const auto found = scores.find(name);
@@ -339,35 +348,49 @@ class PageWriter {
         others.erase(name);
       }
       std::string words;
-      for (const auto& [name, value] : others)
-        words += fmt::format("{}{} {}", words.empty() ? "" : ", ", name, figureText(value));
+      for (const auto& [name, value] : others) {
+        words +=
+            fmt::format("{}{} {}", words.empty() ? "" : ", ", titleOf(scoreWords(name)), figureText(value));
+      }
       out_ += cell(words) + "</tr>\n";
     }
     out_ += "</tbody></table>\n";
   }
 
-  // Every other score of every step and of the evaluation: energies, flicker, losses, counts.
+  // Every other score of every step and of the evaluation, below where they come from: energies, flicker,
+  // losses, counts.
   void otherCurves() {
-    std::string charts;
+    std::map<std::string, std::string> charts;  // by place, in order of names
+    std::vector<std::string> places;
     for (const ScoreCurve& curve : curvesOf(h_)) {
-      if (curve.name.starts_with("surface.score.")) continue;
-      Chart c = chart(curve.name, "");
-      c.width = 340, c.height = 160;
-      c.series.push_back({curve.name, curve.points});
-      const Better better = betterOf(curve.name);
-      if (better != Better::Neither && curve.points.size() > kMarked) {
-        const auto worse = [&](const auto& a, const auto& b) {
-          return better == Better::More ? a.second < b.second : a.second > b.second;
-        };
-        const auto at = std::min_element(curve.points.begin(), curve.points.end(), worse);
-        c.worst.emplace_back(0, static_cast<std::size_t>(at - curve.points.begin()));
-      }
-      charts += "<figure>" + svgOf(c) + "</figure>";
+      if (curve.name.starts_with(kScoreStep.text() + ".")) continue;
+      const CurveWords words = curveWords(page_.stages, curve.name);
+      if (!charts.contains(words.where)) places.push_back(words.where);
+      charts[words.where] += fmt::format("<figure>{}</figure>", svgOf(smallChart(curve, words.score)));
     }
-    if (charts.empty()) return;
+    if (places.empty()) return;
     section("Energies, flicker and other figures over time",
-            "evaluate: as beam evaluate last found it; the others: from the records of the steps.");
-    out_ += "<div class=\"charts small\">" + charts + "</div>\n";
+            "Evaluation: as beam evaluate last found it; the others: from the records of the steps.");
+    for (const std::string& place : places) {
+      if (!place.empty()) out_ += fmt::format("<h3>{}</h3>\n", escapedHtml(place));
+      out_ += fmt::format("<div class=\"charts small\">{}</div>\n", charts[place]);
+    }
+  }
+
+  // The worst value marked, where one is better than another.
+  Chart smallChart(const ScoreCurve& curve, const ScoreWords& words) const {
+    Chart c = chart(words.label, words.unit);
+    c.width = 340, c.height = 160;
+    c.series.push_back({words.label, curve.points});
+    const Better better = betterOf(curve.name);
+    if (better != Better::Neither && curve.points.size() > kMarked) {
+      const auto worse = [&](const auto& a, const auto& b) {
+        return better == Better::More ? a.second < b.second : a.second > b.second;
+      };
+      const auto at = std::min_element(curve.points.begin(), curve.points.end(), worse);
+      c.worst.emplace_back(0, static_cast<std::size_t>(at - curve.points.begin()));
+    }
+    return c;
   }
 
   void settings() {
@@ -375,17 +398,24 @@ class PageWriter {
     out_ += "<table class=\"facts\"><tbody>";
     for (const auto& [label, words] : page_.facts)
       out_ += "<tr>" + cell(label, "name") + cell(words) + "</tr>\n";
-    for (const auto& [key, value] : page_.settings)
-      out_ += "<tr>" + cell(key, "name code") + cell(value) + "</tr>\n";
     out_ += "</tbody></table>\n";
+    if (!page_.settings.empty()) {
+      out_ += "<h3>Settings that differ from the preset</h3>\n<table>" +
+              head({"Setting", "Value", "Unit", "Key"}) + "<tbody>";
+      for (const ReportSetting& s : page_.settings) {
+        out_ += "<tr>" + cell(s.label, "name") + cell(s.value, "n") + cell(s.unit) + cell(s.key, "code") +
+                "</tr>\n";
+      }
+      out_ += "</tbody></table>\n";
+    }
     std::map<StepId, std::pair<double, std::size_t>> steps;
     for (const FrameQuality& f : h_.frames) {
       for (const auto& [step, seconds] : f.seconds) steps[step].first += seconds, ++steps[step].second;
     }
     if (steps.empty()) return;
-    out_ += "<table>" + head({"Step", "Frames", "Seconds a frame", "Together"}) + "<tbody>";
+    out_ += "<table>" + head({"Step", "Frames", "Time a frame, s", "Together"}) + "<tbody>";
     for (const auto& [step, sum] : steps) {
-      out_ += "<tr>" + cell(step.text(), "name code") + cell(std::to_string(sum.second), "n") +
+      out_ += "<tr>" + cell(titleOfStep(page_.stages, step), "name") + cell(std::to_string(sum.second), "n") +
               number(sum.first / static_cast<double>(sum.second), 2) + cell(durationText(sum.first), "n") +
               "</tr>\n";
     }

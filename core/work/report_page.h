@@ -7,16 +7,22 @@
 #include <utility>
 #include <vector>
 
+#include "core/pipeline/stage.h"
 #include "core/work/contact_sheet.h"
 #include "core/work/quality_history.h"
 #include "core/work/scores.h"
 
 namespace beam {
 
+struct ReportSetting {
+  std::string label, key, value, unit;  // the key as typed; unit: empty without
+};
+
 struct ReportPage {
   std::string project, version;
-  std::vector<std::pair<std::string, std::string>> facts;     // label, words
-  std::vector<std::pair<std::string, std::string>> settings;  // what differs: key, value
+  std::vector<StageInfo> stages;                           // whose steps and scores the page names
+  std::vector<std::pair<std::string, std::string>> facts;  // label, words
+  std::vector<ReportSetting> settings;                     // what differs from the preset
   std::size_t frames_in_capture = 0;
   QualityHistory history;
   std::vector<ContactRow> pictures;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace beam {
@@ -13,29 +14,54 @@ namespace {
 constexpr int kLeft = 52, kRight = 12, kTop = 30, kBottom = 26;
 constexpr std::size_t kSeriesColors = 6;
 constexpr double kTicks = 5;
+constexpr double kTitleLetter = 7.2;   // mean width of a letter of 13 px, bold
+constexpr std::size_t kMostDots = 60;  // frames
 
 struct Range {
   double low = 0, high = 1, step = 0.2;
 };
 
-// Round numbers around the values, steps of 1, 2 or 5 times a power of ten.
+// 1, 2 or 5 times a power of ten, at least `rough`.
+double roundStep(double rough) {
+  const double power = std::pow(10.0, std::floor(std::log10(rough))), mantissa = rough / power;
+  return power * (mantissa <= 1 ? 1 : mantissa <= 2 ? 2 : mantissa <= 5 ? 5 : 10);
+}
+
+// Values that are as good as one: a round step to either side of it, of counts at least 1. Nothing below 0
+// that has no reason to be.
+Range rangeAround(double value, bool whole) {
+  if (value == 0) return {0, 1, 1};
+  const double step = std::max(roundStep(0.05 * std::abs(value)), whole ? 1.0 : 0.0);
+  const double low = std::floor(value / step) * step - step, high = std::ceil(value / step) * step + step;
+  if (value > 0) return {std::max(0.0, low), high, step};
+  return {low, std::min(0.0, high), step};
+}
+
+// Round numbers around the values; counts have no ticks between two of them.
 Range rangeOf(const Chart& chart) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
+  bool whole = true;
   for (const ChartSeries& s : chart.series) {
     for (const auto& [frame, value] : s.points) {
       if (!std::isfinite(value)) continue;
       low = std::min(low, value), high = std::max(high, value);
+      whole &= value == std::floor(value);
     }
   }
   if (low > high) return {};
-  if (high - low < 1e-3 * std::max(std::abs(high), 1e-9)) {
-    const double pad = std::max(0.05 * std::abs(high), 1e-6);
-    low -= pad, high += pad;
-  }
-  const double rough = (high - low) / kTicks, power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double mantissa = rough / power;
-  const double step = power * (mantissa <= 1 ? 1 : mantissa <= 2 ? 2 : mantissa <= 5 ? 5 : 10);
+  const double size = std::max(std::abs(low), std::abs(high));
+  if (high - low < 1e-3 * size || high == low) return rangeAround(0.5 * low + 0.5 * high, whole);
+  const double step = std::max(roundStep((high - low) / kTicks), whole ? 1.0 : 0.0);
   return {std::floor(low / step) * step, std::ceil(high / step) * step, step};
+}
+
+// As many decimals as tell neighbouring ticks apart.
+std::string tickText(double value, double step) {
+  constexpr double kMostDecimals = 5;
+  if (std::abs(value) < 1e-9 * step) return "0";
+  const double decimals = std::max(0.0, -std::floor(std::log10(step) + 1e-9));
+  return decimals > kMostDecimals ? figureText(value)
+                                  : fmt::format("{:.{}f}", value, static_cast<int>(decimals));
 }
 
 class ChartWriter {
@@ -70,8 +96,11 @@ class ChartWriter {
 
   // The legend stands right of the title, last series at the border.
   void heading() {
-    text("title", kLeft, 16, "start",
-         chart_.unit.empty() ? chart_.title : fmt::format("{}, {}", chart_.title, chart_.unit));
+    const std::string title =
+        chart_.unit.empty() ? chart_.title : fmt::format("{}, {}", chart_.title, chart_.unit);
+    // A long one begins left of the axis, so that it ends inside.
+    const double wide = kTitleLetter * static_cast<double>(title.size());
+    text("title", std::clamp(chart_.width - kRight - wide, 2.0, double{kLeft}), 16, "start", title);
     if (chart_.series.size() < 2) return;
     double right = chart_.width - kRight;
     for (std::size_t i = chart_.series.size(); i-- > 0;) {
@@ -89,8 +118,7 @@ class ChartWriter {
       const double value = range_.low + i * range_.step;
       out_ += fmt::format("<line class=\"grid\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", kLeft,
                           chart_.width - kRight, y(value), y(value));
-      text("label", kLeft - 6, y(value) + 3.5, "end",
-           figureText(std::abs(value) < 1e-9 * range_.step ? 0 : value));
+      text("label", kLeft - 6, y(value) + 3.5, "end", tickText(value, range_.step));
     }
   }
 
@@ -114,17 +142,19 @@ class ChartWriter {
     }
   }
 
+  // A dot a value, of long curves only where no line shows it.
   void series(std::size_t i) {
+    std::vector<std::pair<std::size_t, double>> points;
+    std::copy_if(chart_.series[i].points.begin(), chart_.series[i].points.end(), std::back_inserter(points),
+                 [](const auto& p) { return std::isfinite(p.second); });
     std::string path;
-    bool open = false;
-    std::size_t before = 0;
-    for (const auto& [frame, value] : chart_.series[i].points) {
-      if (!std::isfinite(value)) continue;
-      const bool joined = open && frame == before + 1;
-      path += fmt::format("{}{:.1f} {:.1f}", joined ? "L" : "M", x(frame), y(value));
-      open = true;
-      before = frame;
-      if (chart_.frames.size() > 60) continue;
+    const auto follows = [&](std::size_t p) {
+      return p > 0 && p < points.size() && points[p].first == points[p - 1].first + 1;
+    };
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const auto& [frame, value] = points[p];
+      path += fmt::format("{}{:.1f} {:.1f}", follows(p) ? "L" : "M", x(frame), y(value));
+      if (chart_.frames.size() > kMostDots && (follows(p) || follows(p + 1))) continue;
       out_ += fmt::format(
           "<circle class=\"s{} dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"><title>{}: {}</title>"
           "</circle>",

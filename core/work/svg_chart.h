@@ -30,7 +30,8 @@ struct Chart {
   int width = 520, height = 220;
 };
 
-// Values that are not finite are left out; points of frames that are not neighbours are not joined.
+// Values that are not finite are left out; points of frames that are not neighbours are not joined. A curve
+// that stays where it is has an axis of round numbers around it.
 std::string svgOf(const Chart& chart);
 
 }  // namespace beam
