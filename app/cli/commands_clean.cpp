@@ -10,6 +10,7 @@
 
 #include "app/cli/answer.h"
 #include "app/cli/commands.h"
+#include "core/base/count_text.h"
 #include "core/pipeline/clean_results.h"
 
 namespace beam {
@@ -24,10 +25,6 @@ struct CleanFlags {
   bool dry_run = false;
   AnswerFlags answer;
 };
-
-std::string counted(std::int64_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
 
 std::string tableText(const CleanPlan& plan, bool dry_run) {
   std::string text =
@@ -47,18 +44,19 @@ std::string alsoText(const CleanPlan& plan) {
   std::vector<std::string> parts;
   if (plan.half_built.count > 0) {
     parts.push_back(fmt::format("{} ({})",
-                                counted(plan.half_built.count, "unfinished folder", "unfinished folders"),
+                                countText(plan.half_built.count, "unfinished folder", "unfinished folders"),
                                 sizeText(plan.half_built.bytes)));
   }
   if (plan.set_aside.count > 0) {
-    parts.push_back(fmt::format("{} ({})", counted(plan.set_aside.count, "damaged result", "damaged results"),
+    parts.push_back(fmt::format("{} ({})",
+                                countText(plan.set_aside.count, "damaged result", "damaged results"),
                                 sizeText(plan.set_aside.bytes)));
   }
   const auto size = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
   if (!plan.failures.empty())
-    parts.push_back(counted(size(plan.failures), "note of a failure", "notes of failures"));
+    parts.push_back(countText(size(plan.failures), "note of a failure", "notes of failures"));
   if (!plan.leases.empty())
-    parts.push_back(counted(size(plan.leases), "lease of a killed process", "leases of killed processes"));
+    parts.push_back(countText(size(plan.leases), "lease of a killed process", "leases of killed processes"));
   return parts.empty() ? std::string() : fmt::format("\nalso {}", fmt::join(parts, ", "));
 }
 

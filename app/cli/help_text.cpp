@@ -12,6 +12,7 @@
 #include "app/cli/flag_facts.h"
 #include "app/cli/help_page.h"
 #include "app/cli/help_topics.h"
+#include "app/cli/json_keys.h"
 
 namespace beam {
 namespace {
@@ -142,6 +143,11 @@ std::string helpJson(const CLI::App& app) {
     j["topics"].push_back({{"topic", topic.name}, {"summary", topic.summary}});
   for (const ExitCodeInfo& e : exitCodes())
     j["exit_codes"].push_back({{"code", e.code}, {"meaning", e.meaning}, {"advice", e.advice}});
+  for (const JsonAnswer& answer : jsonAnswers()) {
+    Json keys = Json::object();
+    for (const JsonKey& key : answer.keys) keys[key.path] = key.meaning;
+    j["json"][answer.command] = std::move(keys);
+  }
   return j.dump(1);
 }
 

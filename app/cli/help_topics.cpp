@@ -7,6 +7,7 @@
 
 #include "app/cli/exit_codes.h"
 #include "app/cli/help_page.h"
+#include "app/cli/json_keys.h"
 #include "core/scene/channel.h"
 #include "core/work/export_frames.h"
 
@@ -76,7 +77,9 @@ std::string filesText() {
   page.blank();
   page.paragraph(
       "Every EXR has either R, G and B or one channel Y, without layers, so that every reader takes "
-      "it. Values are never divided by alpha.",
+      "it. Values are never divided by alpha. With --layers a camera and frame have one linear EXR, "
+      "OUT/layers/<camera>/<frame>.exr: R G B A of rgb, and a layer a channel, such as base_color.R, "
+      "ao.Y, normal.X, depth.Z, relight_<panorama>.R.",
       2);
   page.heading("Exports of beam export");
   for (const ExportFormat& format : exportFormats())
@@ -116,11 +119,14 @@ std::string exitCodesText() {
 }
 
 std::string environmentText() {
-  HelpPage page(12);
+  HelpPage page(16);
   page.paragraph("Two things have this name: variables of the shell, and panoramas of the light.");
   page.heading("Environment variables");
   page.row("NO_COLOR", "set to anything: no colours in messages");
   page.row("TERM", "\"dumb\" or not set: plain lines instead of a bar, no colours");
+  page.row("XDG_STATE_HOME",
+           "where it keeps how long steps took on this machine, for run --dry-run; else "
+           "~/.local/state");
   page.row("TMPDIR", "where beam evaluate puts pictures for a moment; else /tmp");
   page.blank();
   page.paragraph(
@@ -223,6 +229,21 @@ std::string settingsText() {
   return page.text();
 }
 
+std::string jsonText() {
+  HelpPage page(34);
+  page.paragraph(
+      "What --json prints on standard output and --json-file writes. An object begins with written_by, "
+      "the command. Names that are data are shown as *, elements of a list as []; a key that has nothing "
+      "to say is left out. Further keys may come.");
+  page.blank();
+  page.paragraph("beam run --json prints an object a line while it runs: one an event.");
+  for (const JsonAnswer& answer : jsonAnswers()) {
+    page.heading(fmt::format("beam {}", answer.command));
+    for (const JsonKey& key : answer.keys) page.row(key.path, key.meaning);
+  }
+  return page.text();
+}
+
 }  // namespace
 
 const std::vector<HelpTopic>& helpTopics() {
@@ -231,6 +252,7 @@ const std::vector<HelpTopic>& helpTopics() {
       {"frames", "how frames and cameras are chosen; takes", framesText},
       {"settings", "--set, --preset, and where values come from", settingsText},
       {"environment", "variables of the shell; axes of panoramas of the light", environmentText},
+      {"json", "keys of what --json prints", jsonText},
       {"exit-codes", "what the program ends with", exitCodesText},
   };
   return all;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "core/base/count_text.h"
 #include "core/pipeline/setting_changes.h"
 
 namespace beam {
@@ -45,7 +46,7 @@ std::vector<std::string> changedFiles(const std::map<std::string, std::string>& 
   const std::size_t more = changes.size() > kMostNamed ? changes.size() - kMostNamed : 0;
   if (more == 0) return changes;
   changes.resize(kMostNamed);
-  changes.push_back(fmt::format("{} more file{} changed", more, more == 1 ? "" : "s"));
+  changes.push_back(fmt::format("{} changed", countText(more, "more file")));
   return changes;
 }
 

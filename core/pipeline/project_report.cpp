@@ -110,10 +110,10 @@ std::string reasonsText(const Project& project, const StepId& id, const StepInfo
     if (why.empty()) continue;
     const bool some = frames_by_reasons.size() > 1;
     const std::string more = frames.size() > 1 ? fmt::format(" to {}", frames.back()) : "";
-    text += fmt::format("    because {}{}\n", fmt::join(why, ", "),
-                        some ? fmt::format(" ({} frame{}, {}{})", frames.size(),
-                                           frames.size() == 1 ? "" : "s", frames.front(), more)
-                             : std::string());
+    text +=
+        fmt::format("    because {}{}\n", fmt::join(why, ", "),
+                    some ? fmt::format(" ({}, {}{})", countText(frames.size(), "frame"), frames.front(), more)
+                         : std::string());
   }
   return text;
 }

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "core/base/count_text.h"
 #include "core/base/duration_text.h"
 
 namespace beam {
@@ -87,9 +88,12 @@ std::string framesText(const StepEstimate& step) {
 }
 
 std::string totalText(const RunEstimate& e) {
-  if (e.steps_missing == 0) return fmt::format("nothing to compute: all {} results are there", e.steps_total);
-  std::string text = fmt::format("{} of {} results to compute, in {} of {} frame{}", e.steps_missing,
-                                 e.steps_total, e.frames, e.frames_total, e.frames_total == 1 ? "" : "s");
+  if (e.steps_missing == 0)
+    return fmt::format("nothing to compute: {}{} there", e.steps_total == 1 ? "" : "all ",
+                       countText(e.steps_total, "result is", "results are"));
+  std::string text =
+      fmt::format("{} of {} to compute, in {} of {}", e.steps_missing, countText(e.steps_total, "result"),
+                  e.frames, countText(e.frames_total, "frame"));
   text += e.measured
               ? fmt::format(": {}, by what was measured here", aboutText(e.seconds_low, e.seconds_high))
               : std::string("; how long it takes is known once its steps have run here");

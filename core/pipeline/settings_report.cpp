@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/count_text.h"
 #include "core/base/field_text.h"
 #include "core/pipeline/presets.h"
 
@@ -168,9 +169,8 @@ std::string stagesText(const PipelineSetup& setup, const Project* project) {
   const Settings settings(setup, project);
   std::string text;
   if (project) {
-    const std::size_t set = project->document().settings.size();
-    text = fmt::format("project {}, preset {}, {} setting{} set beside it\n", project->name(),
-                       project->document().preset, set, set == 1 ? "" : "s");
+    text = fmt::format("project {}, preset {}, {} set beside it\n", project->name(),
+                       project->document().preset, countText(project->document().settings.size(), "setting"));
   }
   for (const StageInfo& info : setup.stages.infos()) {
     text += fmt::format("{}: {} {}\n", info.id, info.title, info.summary);
