@@ -16,7 +16,6 @@ bool toFile(const AnswerFlags& flags) { return !flags.json_file.empty() && flags
 std::string signedBy(const std::string& command, const std::string& json) {
   using Json = nlohmann::ordered_json;
   const Json content = Json::parse(json);
-  if (!content.is_object()) return json;
   Json whole = {{"written_by", {{"program", writerOf(command)}}}};
   whole.update(content);
   return whole.dump(1);

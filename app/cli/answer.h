@@ -22,7 +22,7 @@ void addAnswerFlags(CLI::App& command, AnswerFlags& flags);
 // Before the work: throws what requireFileTarget does of the file.
 void requireAnswerTarget(const AnswerFlags& flags, const std::string& command);
 
-// `json` is asked for where it is needed. An object says first which command wrote it.
+// `json`, an object, is asked for where it is needed. It says first which command wrote it.
 void answer(const AnswerFlags& flags, const std::string& command, Console& console, const std::string& words,
             const std::function<std::string()>& json);
 

@@ -120,7 +120,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command->add_option("PROJECT", flags->project, "Project folder")->required();
   command->add_option("--channels", flags->channels, "What the pictures show; see beam help files")
       ->type_name("NAME");
-  command->add_option("--cameras", flags->cameras, "test, train, all, names or patterns; see beam help frames")
+  command
+      ->add_option("--cameras", flags->cameras, "test, train, all, names or patterns; see beam help frames")
       ->type_name("LIST");
   command->add_option("--frames", flags->frames, kSolvedFramesHelp)->type_name("LIST");
   command

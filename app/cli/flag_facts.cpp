@@ -54,8 +54,7 @@ void readType(const std::string& text, FlagFacts& facts) {
       facts.choices = wordsOf(part);
       facts.separated = part.ends_with(kList);
     }
-    if (const std::string range = rangeOf(part); !range.empty())
-      facts.range = range;
+    if (const std::string range = rangeOf(part); !range.empty()) facts.range = range;
   }
 }
 

@@ -26,6 +26,11 @@ fs::path resolved(const fs::path& place) {
 }
 
 [[noreturn]] void liesIn(const fs::path& place, const fs::path& owner, const char* what) {
+  if (resolved(place) == owner) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" exists and is a {}, which is never written over; choose another name",
+                            place.string(), what));
+  }
   throw Error(Error::Kind::Usage,
               fmt::format("\"{}\" lies in the {} \"{}\", which is never written into; choose a place outside",
                           place.string(), what, owner.string()));

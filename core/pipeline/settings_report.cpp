@@ -186,14 +186,16 @@ std::string stagesText(const PipelineSetup& setup, const Project* project) {
 
 std::string stagesJson(const PipelineSetup& setup, const Project* project) {
   const Settings settings(setup, project);
-  Json j = Json::array();
+  Json j = Json::object();
+  if (project) j = {{"project", project->name()}, {"preset", project->document().preset}};
+  j["stages"] = Json::array();
   for (const StageInfo& info : setup.stages.infos()) {
     Json stage = {{"id", info.id}, {"title", info.title}, {"summary", info.summary}};
     stage["steps"] = Json::array();
     for (const StepInfo& step : info.steps) stage["steps"].push_back(toJsonValue(info, step));
     stage["settings"] = Json::array();
     for (const Setting& setting : settings.of(info.id)) stage["settings"].push_back(toJsonValue(setting));
-    j.push_back(std::move(stage));
+    j["stages"].push_back(std::move(stage));
   }
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }

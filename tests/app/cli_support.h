@@ -66,6 +66,17 @@ class Running {
     ::_exit(127);
   }
   void signal(int number) const { ::kill(child_, number); }
+  // Returns when the program has a handler for the signal, or has ended.
+  void awaitHandlerOf(int number) const {
+    const std::string file = "/proc/" + std::to_string(child_) + "/status";
+    for (bool caught = false; !caught && !ended();
+         std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+      const std::string status = textOf(file);
+      const std::size_t at = status.find("SigCgt:");
+      if (at == std::string::npos) continue;
+      caught = (std::stoull(status.substr(at + 7), nullptr, 16) >> (number - 1)) & 1;
+    }
+  }
   bool ended() const {
     siginfo_t info{};
     return ::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||

@@ -37,7 +37,7 @@ class Settings : public ::testing::Test {
   std::string at(const char* name) const { return (folder_.path() / name).string(); }
   // Where a value in force comes from.
   std::string originOf(const std::string& key) const {
-    const Json stages = Json::parse(beam({"stages", project(), "--json"}).out);
+    const Json stages = Json::parse(beam({"stages", project(), "--json"}).out)["stages"];
     for (const Json& stage : stages)
       for (const Json& setting : stage["settings"])
         if (setting["key"] == key) return setting["from"].get<std::string>() + " " + setting["value"].dump();
