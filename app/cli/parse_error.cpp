@@ -90,8 +90,6 @@ std::string namedText(const Named& named, const CLI::ParseError& error) {
   if (kind == "ConversionError")
     return fmt::format("{} expects a number, found \"{}\".", f.name(),
                        fmt::join(named.option->results(), ","));
-  if (kind == "ArgumentMismatch" && named.option->count() > 1)
-    return fmt::format("{} is given {} times; it takes one value.", f.name(), named.option->count());
   if (kind == "ArgumentMismatch") return fmt::format("{} needs a value, {}.", f.name(), f.type);
   return fmt::format("{}.", error.what());
 }

@@ -94,7 +94,7 @@ TEST_F(Clean, LeavesTheResultsOfTheSettingsInForceByteForByteAndNothingElse) {
   EXPECT_EQ(status(project())["disk"]["in_force"]["results"], status(only())["disk"]["in_force"]["results"]);
   const std::string words = beam({"status", project().string()}).out;
   EXPECT_THAT(words, Not(HasSubstr("other settings")));
-  EXPECT_THAT(words, HasSubstr("surface.mesh       pending (1 frames); done 000000"));
+  EXPECT_THAT(words, HasSubstr("surface.mesh       pending (1 frame); done 000000"));
   EXPECT_THAT(beam(solve(project())).err, HasSubstr("nothing to compute"));
 }
 

@@ -170,8 +170,6 @@ TEST(Words, ThatAreMissingOrWrongAreToldAsSentences) {
       "beam run: --preset expects draft, standard, paper, found \"drift\"; did you mean \"draft\"? See");
   expectUsage({"render", "x", "--out", "y", "--channels", "rgb,norm"}, "beam render: --channels expects ");
   expectUsage({"run", "x", "--stage", "surface", "--until", "surface"}, "beam run: --");
-  expectUsage({"run", "x", "--stage", "light", "--stage", "light"},
-              "beam run: --stage is given 2 times; it takes one value. See");
 }
 
 TEST(Version, IsACommandAndAFlag) {
