@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,7 +32,8 @@ struct CheckFlags {
 
 int runCheck(const CheckFlags& flags, Console& console) {
   ImportOptions options;
-  if (Project::isProject(flags.path)) {
+  std::error_code failed;
+  if (Project::isProject(flags.path) || !std::filesystem::exists(flags.path, failed)) {
     throw Error(Error::Kind::Data,
                 fmt::format("beam check looks at a capture, a panorama or splats; \"{}\" {}", flags.path,
                             kindInWords(flags.path)));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "app/cli/commands.h"
@@ -38,14 +39,17 @@ void tellInterpolated(const std::vector<std::string>& names, Console& console) {
     console.print(fmt::format("interpolated, not solved: frames {}", fmt::join(names, ", ")));
 }
 
-// With commas, blanks around them; the last time the flag is typed holds.
+// With commas, blanks around them, each once; the last time the flag is typed holds.
 std::vector<std::string> channelsIn(const std::string& list) {
   std::vector<std::string> ids = splitAtCommas(list);
   if (ids.empty()) {
     throw Error(Error::Kind::Usage,
                 fmt::format("--channels is empty; expected some of {}", fmt::join(channelIds(), ", ")));
   }
-  return ids;
+  std::vector<std::string> once;
+  for (std::string& id : ids)
+    if (std::find(once.begin(), once.end(), id) == once.end()) once.push_back(std::move(id));
+  return once;
 }
 
 std::string writtenText(const RenderFramesOutcome& outcome, const RenderFlags& flags) {

@@ -202,7 +202,8 @@ std::string settingsText() {
   HelpPage page(22);
   page.paragraph(
       "Settings have names like surface.iterations: the stage, then the setting. beam stages lists "
-      "every one with its default, its range and its meaning.");
+      "every one with its default, its range, its meaning and what each preset says; beam stages P.beam the "
+      "values in force in a project and where each comes from.");
   page.heading("Where a value comes from");
   page.row("1. the default", "the paper's number");
   page.row("2. the preset",
@@ -223,7 +224,9 @@ std::string settingsText() {
   page.heading("What is computed again");
   page.paragraph(
       "A result is kept under the settings it was made with. After a change, only steps that the setting "
-      "reaches are computed again; taking it back finds the earlier results. Settings that cost time or "
+      "reaches are computed again; taking it back finds the earlier results. Until then render, "
+      "export, evaluate and report use the last settings that were solved, and say what changed since; "
+      "--strict refuses. beam clean removes what no setting in force needs. Settings that cost time or "
       "memory alone change no result.",
       2);
   return page.text();

@@ -68,6 +68,9 @@ void requireOwn(const fs::path& file, const OutputRule& rule) {
 }  // namespace
 
 void requireOutside(const fs::path& place) {
+  if (place.empty()) {
+    throw Error(Error::Kind::Usage, "the place to write to is empty; expected the name of a file or folder");
+  }
   fs::path at = resolved(place);
   for (;; at = at.parent_path()) {
     if (Project::isProject(at)) liesIn(place, at, "project");

@@ -14,7 +14,8 @@ struct OutputRule {
   bool force = false;   // files of others are replaced as well
 };
 
-// Throws Error{Usage} when `place`, which need not be there, is or lies in a capture or a project.
+// Throws Error{Usage} when `place`, which need not be there, is or lies in a capture or a project, or is
+// empty.
 void requireOutside(const std::filesystem::path& place);
 
 // For a file that will be written. Makes its folder. Throws Error{Usage}: inside a capture or a project, no

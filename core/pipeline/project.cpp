@@ -47,6 +47,7 @@ Project::Project(fs::path folder, ProjectDocument document, std::shared_ptr<cons
       inputs_(std::make_shared<InputDigests>()) {}
 
 Project Project::open(const fs::path& folder, std::shared_ptr<const PipelineSetup> setup) {
+  if (folder.empty()) throw Error(Error::Kind::Usage, "the project's name is empty; expected Name.beam");
   if (!isProject(folder) && looksLikeProject(folder)) {
     throw Error(Error::Kind::Data, fmt::format("\"{}\" is a project that has lost its project.json; {}",
                                                folder.string(), historyAdvice(folder)));

@@ -156,7 +156,9 @@ EvaluateOutcome evaluate(const EvaluateRequest& request, ComputeDevice& device, 
   std::vector<std::string> changes;
   if (request.pictures.empty()) {
     const WantedResults wanted{.frames = request.frames, .strict = request.strict};
+    if (!request.ground_truth.empty()) openGroundTruth(request.ground_truth);  // refused before it is told
     LastSolved last = lastSolved(request.project, wanted, progress);
+    last.tell();
     solved.project = std::move(last.project);
     changes = std::move(last.changes);
   }

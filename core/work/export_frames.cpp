@@ -90,7 +90,9 @@ const std::vector<ExportFormat>& exportFormats() {
 ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   const Format& format = formatOf(request.format);
   const WantedResults wanted{.frames = request.frames, .between = true, .strict = request.strict};
-  const Project project = lastSolved(request.project, wanted, progress).project;
+  requireOutside(request.out);
+  const LastSolved last = lastSolved(request.project, wanted, progress);
+  const Project& project = last.project;
   const auto sequence = sequenceOf(project, Shows::Between);
   const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
   const Similarity3 capture_from_world = sequence->captureFromWorld();
@@ -101,6 +103,7 @@ ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
     labels.push_back(sequence->frames()[static_cast<std::size_t>(frame.value)]);
   const std::vector<std::filesystem::path> files = filesOf(labels, sequence->frames(), format);
   requireFolderTarget(request.out, files, {kCommand, request.force});
+  last.tell();
   ExportOutcome outcome;
   progress.expect(static_cast<std::int64_t>(frames.size()));
   for (std::size_t i = 0; i < frames.size(); ++i) {

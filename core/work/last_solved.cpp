@@ -77,6 +77,14 @@ std::string changesText(const std::vector<std::string>& changes) {
   return fmt::format("{} and {} more", fmt::join(named, ", "), changes.size() - kMostNamed);
 }
 
+void LastSolved::tell() const {
+  if (changes.empty()) return;
+  logWarning(
+      "\"{}\": the results are those of other settings than are in force ({}): beam run it to solve "
+      "the frames anew; --strict refuses",
+      project.folder().string(), changesText(changes));
+}
+
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
   if (project.withoutCapture()) return {project, {}};
   const Solved now = solvedOf(project, wanted, progress);
@@ -92,10 +100,6 @@ LastSolved lastSolved(const Project& project, const WantedResults& wanted, const
                             "they changed ({}): beam run it, or leave out --strict",
                             project.folder().string(), told));
   }
-  logWarning(
-      "\"{}\": the results are those of other settings than are in force ({}): beam run it to solve "
-      "the frames anew; --strict refuses",
-      project.folder().string(), told);
   return {*found, changes.empty() ? std::vector<std::string>{told} : changes};
 }
 

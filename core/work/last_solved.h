@@ -21,10 +21,13 @@ struct WantedResults {
 struct LastSolved {
   Project project;                   // with the settings that the frames are taken from; never to be saved
   std::vector<std::string> changes;  // settingChanges from these to those in force; empty: they are the same
+
+  // Logs a warning that names what changed, where something did; once nothing else is refused.
+  void tell() const;
 };
 
-// Says a warning that names what changed. Gives the project as it is where no settings in its history solved
-// what is wanted, or it is looked at without its capture. Of frames in force without materials it takes those
+// Gives the project as it is where no settings in its history solved what is wanted, or it is looked at
+// without its capture. Of frames in force without materials it takes those
 // of other settings only on the same surface. Throws Error{Data} where `strict` alone refuses, Error{Usage}
 // for frames that the capture does not have, Cancelled.
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress);

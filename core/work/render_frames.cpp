@@ -28,7 +28,9 @@ WantedResults wantedOf(const RenderFramesRequest& request) {
 
 RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRenderer& renderer,
                                  Progress& progress) {
-  const Project project = lastSolved(request.project, wantedOf(request), progress).project;
+  requireOutside(request.out);
+  const LastSolved last = lastSolved(request.project, wantedOf(request), progress);
+  const Project& project = last.project;
   const auto sequence = sequenceOf(project, Shows::Between);
   RenderRequest pictures;
   pictures.channels = request.channels;
@@ -41,6 +43,7 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   pictures.out = request.out;
   pictures.written_by = writerOf(kCommand);
   requireFolderTarget(request.out, channelFiles(*sequence, pictures), {kCommand, request.force});
+  last.tell();
   const RenderedFiles files = renderChannels(*sequence, pictures, renderer, progress);
   return {pictures.views.size(), pictures.frames.size(), interpolatedOf(*sequence, pictures.frames),
           files.written, files.kept};

@@ -71,6 +71,8 @@ TEST_F(LastSolvedTest, IsTheSettingsBeforeAndSaysWhatChanged) {
   const LastSolved last = lastSolved(project, {.materials = true}, progress_);
   EXPECT_THAT(last.changes, ElementsAre(kChange));
   EXPECT_EQ(last.project.state(kMaterialsStep, FrameIndex{0}), StepState::Done);
+  EXPECT_THAT(warnings_, IsEmpty());
+  last.tell();
   ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_THAT(warnings_[0], HasSubstr(kChange));
 }
@@ -119,6 +121,18 @@ TEST_F(LastSolvedTest, ServesPicturesExportsScoresAndTheReportWhichIsMarked) {
   EXPECT_THAT(readTextFile(folder_ / "page.html"), HasSubstr(kChange));
   const auto names_it = [](const std::string& warning) { return warning.find(kChange) != std::string::npos; };
   EXPECT_EQ(std::count_if(warnings_.begin(), warnings_.end(), names_it), 4);
+}
+
+TEST_F(LastSolvedTest, WarnsOfNothingWhereTheWorkIsRefused) {
+  const Project project = changed();
+  messageOf(Error::Kind::Usage, [&] {
+    exportFrames({project, "all", false, project.folder() / "in"}, progress_);
+  });
+  messageOf(Error::Kind::Usage, [&] { exportFrames({project, "all", false, ""}, progress_); });
+  messageOf(Error::Kind::Data, [&] {
+    evaluate({project, "all", folder_ / "none", {}}, *device_, progress_);
+  });
+  EXPECT_THAT(warnings_, IsEmpty());
 }
 
 TEST_F(LastSolvedTest, ChangesNothingInTheProject) {
