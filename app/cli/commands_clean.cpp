@@ -11,6 +11,7 @@
 #include "app/cli/answer.h"
 #include "app/cli/commands.h"
 #include "core/base/count_text.h"
+#include "core/base/error.h"
 #include "core/pipeline/clean_results.h"
 
 namespace beam {
@@ -98,6 +99,19 @@ std::string toJson(const CleanPlan& plan, bool dry_run) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
+// Of stages of which nothing would stay: pictures and exports are made of these results now.
+std::string lastOnesText(const CleanPlan& plan) {
+  std::vector<std::string> stages;
+  for (const StageUse& stage : plan.use.stages)
+    if (!stage.stage.empty() && stage.in_force.count == 0 && stage.others.count > 0)
+      stages.push_back(stage.stage);
+  if (stages.empty()) return {};
+  return fmt::format(
+      "no result of {} is of the settings in force: those that would go are what render, export and report "
+      "use now; beam run it first, or take the settings back with --unset",
+      fmt::join(stages, ", "));
+}
+
 int runClean(const CleanFlags& flags, CommandContext& context) {
   const auto& pipeline = context.services.pipeline;
   requireAnswerTarget(flags.answer, kCommand);
@@ -106,8 +120,14 @@ int runClean(const CleanFlags& flags, CommandContext& context) {
       flags.dry_run ? "interrupted; nothing was removed"
                     : "interrupted; results in force are untouched, what is left of the others the next beam "
                       "clean removes";
-  const CleanPlan plan = flags.dry_run ? planClean(Project::open(flags.project, pipeline), progress)
-                                       : cleanResults(flags.project, pipeline, progress);
+  CleanPlan plan = planClean(Project::open(flags.project, pipeline), progress);
+  if (const std::string last_ones = lastOnesText(plan); !last_ones.empty()) {
+    if (flags.dry_run || flags.answer.force)
+      context.console.warning(last_ones);
+    else
+      throw Error(Error::Kind::Usage, fmt::format("{}; --force removes them all the same", last_ones));
+  }
+  if (!flags.dry_run) plan = cleanResults(flags.project, pipeline, progress);
   context.console.endProgress();
   answer(flags.answer, kCommand, context.console, words(plan, flags.dry_run),
          [&] { return toJson(plan, flags.dry_run); });
@@ -123,6 +143,8 @@ void addCleanCommand(CLI::App& app, CommandContext& context) {
   command->add_option("PROJECT", flags->project, "Project folder")->required();
   command->add_flag("--dry-run", flags->dry_run, "Say what would be removed, and remove nothing");
   addAnswerFlags(*command, flags->answer);
+  command->get_option("--force")->description(
+      "Replace files that this command did not write; remove also the last results of a stage");
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runClean(*flags, context); }; });
 }

@@ -155,7 +155,7 @@ EvaluateOutcome evaluate(const EvaluateRequest& request, ComputeDevice& device, 
   EvaluateRequest solved = request;
   std::vector<std::string> changes;
   if (request.pictures.empty()) {
-    const WantedResults wanted{.frames = request.frames, .strict = request.strict};
+    const WantedResults wanted{.frames = request.frames, .materials_if_any = true, .strict = request.strict};
     if (!request.ground_truth.empty()) openGroundTruth(request.ground_truth);  // refused before it is told
     LastSolved last = lastSolved(request.project, wanted, progress);
     last.tell();

@@ -89,7 +89,8 @@ const std::vector<ExportFormat>& exportFormats() {
 
 ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   const Format& format = formatOf(request.format);
-  const WantedResults wanted{.frames = request.frames, .between = true, .strict = request.strict};
+  const WantedResults wanted{
+      .frames = request.frames, .between = true, .materials_if_any = true, .strict = request.strict};
   requireOutside(request.out);
   const LastSolved last = lastSolved(request.project, wanted, progress);
   const Project& project = last.project;

@@ -53,20 +53,39 @@ bool onSameSurface(const Project& a, const Project& b, FrameIndex frame) {
   return a.key(kRefineStep, frame) == b.key(kRefineStep, frame);
 }
 
-// The last settings that solve what is wanted, better than those in force, which solve `now` of it.
-std::optional<Project> lastThatSolves(const Project& project, const WantedResults& wanted, const Solved& now,
+struct Earlier {
+  Project project;
+  bool materials = false;
+};
+
+// The last settings that solve what is wanted, better than those in force, which solve `now` of it: of those
+// that do, the last with materials where these are asked for.
+std::optional<Earlier> lastThatSolves(const Project& project, const WantedResults& wanted, const Solved& now,
                                       const Progress& progress) {
+  std::optional<Earlier> without;
   for (const Project& earlier : earlierVersions(project)) {
     progress.check();
     try {
       const Solved then = solvedOf(earlier, wanted, progress);
       if (!then.enough) continue;
-      if (!now.enough || (then.materials && onSameSurface(project, earlier, *now.first))) return earlier;
+      if (now.enough && !(then.materials && onSameSurface(project, earlier, *now.first))) continue;
+      if (then.materials || !wanted.materials_if_any) return Earlier{earlier, then.materials};
+      if (!without) without = Earlier{earlier, false};
     } catch (const Error& e) {
       logDebug("settings of the history of \"{}\" are passed over: {}", project.folder().string(), e.what());
     }
   }
-  return std::nullopt;
+  return without;
+}
+
+// Of what the results are made of: settings of materials that are not there have no part in them.
+std::vector<std::string> changesOf(const Earlier& earlier, const Project& now) {
+  std::vector<std::string> changes = settingChanges(earlier.project, now);
+  if (!earlier.materials) {
+    const std::string materials = fmt::format("{}.", kMaterialsStep.stage());
+    std::erase_if(changes, [&](const std::string& change) { return change.starts_with(materials); });
+  }
+  return changes;
 }
 
 }  // namespace
@@ -88,19 +107,18 @@ void LastSolved::tell() const {
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
   if (project.withoutCapture()) return {project, {}};
   const Solved now = solvedOf(project, wanted, progress);
-  if (now.enough && now.materials) return {project, {}};
-  const std::optional<Project> found = lastThatSolves(project, wanted, now, progress);
+  if (now.enough && (now.materials || !wanted.materials_if_any)) return {project, {}};
+  const std::optional<Earlier> found = lastThatSolves(project, wanted, now, progress);
   if (!found) return {project, {}};
-  const std::vector<std::string> changes = settingChanges(*found, project);
+  const std::vector<std::string> changes = changesOf(*found, project);
   const std::string told = changes.empty() ? "other takes" : changesText(changes);
-  if (wanted.strict && now.enough) return {project, {}};
   if (wanted.strict) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\": what is wanted is not solved with the settings in force, only before "
                             "they changed ({}): beam run it, or leave out --strict",
                             project.folder().string(), told));
   }
-  return {*found, changes.empty() ? std::vector<std::string>{told} : changes};
+  return {found->project, changes.empty() ? std::vector<std::string>{told} : changes};
 }
 
 }  // namespace beam

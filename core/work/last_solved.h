@@ -15,6 +15,8 @@ struct WantedResults {
   std::string frames = "all";  // of selectSolvedFrames: any frame is enough for "all", of a list each
   bool between = false;        // frames between those of a scout count as solved
   bool materials = false, mesh = false;
+  bool materials_if_any =
+      false;            // enough without, but with them where some settings have them on the surface
   bool strict = false;  // nothing but the settings in force
 };
 

@@ -160,7 +160,8 @@ std::vector<std::string> findingsOf(const QualityHistory& history) {
 
 ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progress& progress) {
   requireFileTarget(request.out, {kReportCommand, request.force});
-  const LastSolved last = lastSolved(request.project, {.strict = request.strict}, progress);
+  const LastSolved last =
+      lastSolved(request.project, {.materials_if_any = true, .strict = request.strict}, progress);
   last.tell();
   const Project& project = last.project;
   const auto sequence = sequenceOf(project, Shows::Solved);

@@ -72,6 +72,18 @@ class Clean : public ::testing::Test {
 };
 std::unique_ptr<TempDir> Clean::house_;
 
+TEST_F(Clean, RefusesToRemoveTheOnlyResultsThatThereAre) {
+  ASSERT_EQ(beam({"run", only().string(), "--until", "capture", "--set", "surface.iterations=77"}).code, 0);
+  const auto before = filesIn(only() / "results");
+  EXPECT_THAT(beam({"clean", only().string(), "--dry-run"}).err, HasSubstr("no result of"));
+  const Said said = beam({"clean", only().string()});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_THAT(said.err, AllOf(HasSubstr("surface"), HasSubstr("--force")));
+  EXPECT_TRUE(filesIn(only() / "results") == before);
+  EXPECT_EQ(beam({"clean", only().string(), "--force"}).code, 0);
+  EXPECT_LT(filesIn(only() / "results").size(), before.size());
+}
+
 TEST_F(Clean, LeavesTheResultsOfTheSettingsInForceByteForByteAndNothingElse) {
   const auto before = filesIn(project() / "results");
   ASSERT_GT(bytesOf(productsOf(project())), bytesOf(productsOf(only())));

@@ -96,7 +96,20 @@ TEST_F(LastSolvedTest, TakesAllFramesFromTheSameSettings) {
 
 TEST_F(LastSolvedTest, TakesMaterialsOfOtherSettingsOnTheSurfaceInForce) {
   const Project project = changed("materials.iterations", 7);
-  EXPECT_THAT(lastSolved(project, {}, progress_).changes, ElementsAre("materials.iterations 100 → 7"));
+  const WantedResults wanted{.materials_if_any = true};
+  EXPECT_THAT(lastSolved(project, wanted, progress_).changes, ElementsAre("materials.iterations 100 → 7"));
+  EXPECT_THAT(lastSolved(project, {}, progress_).changes, IsEmpty()) << "the surface is in force";
+  messageOf(Error::Kind::Data,
+            [&] { lastSolved(project, {.materials_if_any = true, .strict = true}, progress_); });
+}
+
+TEST_F(LastSolvedTest, NamesNoChangeOfMaterialsThatWereNeverSolved) {
+  Project project = changed("materials.iterations", 7);
+  project.set("materials.iterations", 100);
+  project.set("surface.iterations", 300);
+  project.save();
+  EXPECT_THAT(lastSolved(project, {}, progress_).changes, ElementsAre(kChange));
+  EXPECT_THAT(lastSolved(project, {.materials_if_any = true}, progress_).changes, ElementsAre(kChange));
 }
 
 TEST_F(LastSolvedTest, ScoresANewSurfaceRatherThanOldMaterials) {
