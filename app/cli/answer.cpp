@@ -34,12 +34,12 @@ void requireAnswerTarget(const AnswerFlags& flags, const std::string& command) {
   if (toFile(flags)) requireFileTarget(flags.json_file, {command, flags.force});
 }
 
-void answer(const AnswerFlags& flags, const std::string& command, Console& console, const std::string& words,
-            const std::function<std::string()>& json) {
+void answer(const AnswerFlags& flags, const std::string& command, Console& console,
+            const std::function<std::string()>& words, const std::function<std::string()>& json) {
   const bool print_json = flags.json || flags.json_file == "-";
   const std::string whole = print_json || toFile(flags) ? signedBy(command, json()) : std::string();
   if (toFile(flags)) writeFileAtomically(flags.json_file, whole + "\n");
-  console.print(print_json ? whole : words);
+  console.print(print_json ? whole : words());
 }
 
 }  // namespace beam

@@ -22,8 +22,8 @@ void addAnswerFlags(CLI::App& command, AnswerFlags& flags);
 // Before the work: throws what requireFileTarget does of the file.
 void requireAnswerTarget(const AnswerFlags& flags, const std::string& command);
 
-// `json`, an object, is asked for where it is needed. It says first which command wrote it.
-void answer(const AnswerFlags& flags, const std::string& command, Console& console, const std::string& words,
-            const std::function<std::string()>& json);
+// Each is asked for where it is needed. `json`, an object, says first which command wrote it.
+void answer(const AnswerFlags& flags, const std::string& command, Console& console,
+            const std::function<std::string()>& words, const std::function<std::string()>& json);
 
 }  // namespace beam

@@ -120,17 +120,20 @@ int runClean(const CleanFlags& flags, CommandContext& context) {
       flags.dry_run ? "interrupted; nothing was removed"
                     : "interrupted; results in force are untouched, what is left of the others the next beam "
                       "clean removes";
-  CleanPlan plan = planClean(Project::open(flags.project, pipeline), progress);
-  if (const std::string last_ones = lastOnesText(plan); !last_ones.empty()) {
-    if (flags.dry_run || flags.answer.force)
-      context.console.warning(last_ones);
-    else
+  const auto accept = [&](const CleanPlan& plan) {
+    const std::string last_ones = lastOnesText(plan);
+    if (last_ones.empty()) return;
+    if (!flags.dry_run && !flags.answer.force)
       throw Error(Error::Kind::Usage, fmt::format("{}; --force removes them all the same", last_ones));
-  }
-  if (!flags.dry_run) plan = cleanResults(flags.project, pipeline, progress);
+    context.console.warning(last_ones);
+  };
+  const CleanPlan plan = flags.dry_run ? planClean(Project::open(flags.project, pipeline), progress)
+                                       : cleanResults(flags.project, pipeline, progress, accept);
+  if (flags.dry_run) accept(plan);
   context.console.endProgress();
-  answer(flags.answer, kCommand, context.console, words(plan, flags.dry_run),
-         [&] { return toJson(plan, flags.dry_run); });
+  answer(
+      flags.answer, kCommand, context.console, [&] { return words(plan, flags.dry_run); },
+      [&] { return toJson(plan, flags.dry_run); });
   return 0;
 }
 

@@ -85,8 +85,9 @@ int runEvaluate(const EvaluateFlags& flags, CommandContext& context) {
   const EvaluateOutcome outcome = evaluate(request, *device, progress);
   context.console.endProgress();
   keepEvaluation(request.project, outcome);
-  answer(flags.answer, kCommand, context.console, scoreText(outcome.table),
-         [&] { return scoreJson(outcome.table, outcome.each, outcome.setting_changes); });
+  answer(
+      flags.answer, kCommand, context.console, [&] { return scoreText(outcome.table); },
+      [&] { return scoreJson(outcome.table, outcome.each, outcome.setting_changes); });
   return 0;
 }
 

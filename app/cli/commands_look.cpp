@@ -44,7 +44,8 @@ int runCheck(const CheckFlags& flags, Console& console) {
   requireAnswerTarget(flags.answer, "check");
   const CheckReport report = checkPath(flags.path, options);
   for (const std::string& w : report.warnings) console.warning(w);
-  answer(flags.answer, "check", console, toText(report), [&] { return toJson(report); });
+  answer(
+      flags.answer, "check", console, [&] { return toText(report); }, [&] { return toJson(report); });
   return flags.strict && !report.warnings.empty() ? exitCode(Error::Kind::Data) : 0;
 }
 

@@ -162,8 +162,9 @@ void addStatusCommand(CLI::App& app, CommandContext& context) {
       Progress progress(context.stop, context.console.listener());
       const DiskUse use = diskUse(project, progress);
       context.console.endProgress();
-      answer(*flags, "status", context.console, statusWords(project, use),
-             [&] { return statusAsJson(project, use); });
+      answer(
+          *flags, "status", context.console, [&] { return statusWords(project, use); },
+          [&] { return statusAsJson(project, use); });
       return 0;
     };
   });
@@ -183,8 +184,9 @@ void addStagesCommand(CLI::App& app, CommandContext& context) {
       if (!folder->empty()) project = Project::open(*folder, setup);
       const Project* of = project ? &*project : nullptr;
       requireAnswerTarget(*flags, "stages");
-      answer(*flags, "stages", context.console, stagesText(*setup, of),
-             [&] { return stagesJson(*setup, of); });
+      answer(
+          *flags, "stages", context.console, [&] { return stagesText(*setup, of); },
+          [&] { return stagesJson(*setup, of); });
       return 0;
     };
   });

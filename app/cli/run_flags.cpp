@@ -62,16 +62,15 @@ void requirePanorama(const std::filesystem::path& file) {
   makeEnvironment(readRadiance(file));
 }
 
-void keepTimes(const Project& project) {
+// Of this machine in any project, and what the records of this one say.
+StepTimes knownTimes(const Project& project) {
   StepTimes times = readMachineTimes();
   times.add(readStepTimes(project));
-  keepMachineTimes(times);
+  return times;
 }
 
 int tellPlan(const Project& project, const RunRequest& request, const RunFlags& flags, Console& console) {
-  StepTimes times = readMachineTimes();
-  times.add(readStepTimes(project));
-  const RunEstimate estimate = estimateRun(project, request, times);
+  const RunEstimate estimate = estimateRun(project, request, knownTimes(project));
   console.print(flags.json ? toJson(estimate) : toText(estimate));
   return 0;
 }
@@ -155,8 +154,8 @@ void applyFlags(Project& project, const ProjectFlags& flags) {
 int runProject(Project project, const RunFlags& flags, CommandContext& context) {
   RunRequest request{.stage = flags.stage, .until = flags.until, .every = flags.every};
   if (!isAllFrames(flags.frames)) request.frames = parseFrameList(flags.frames, project.capture().frames);
-  makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
   if (flags.dry_run) return tellPlan(project, request, flags, context.console);
+  makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
   std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   project.save();
   const Project kept = project;
@@ -172,7 +171,7 @@ int runProject(Project project, const RunFlags& flags, CommandContext& context) 
     if (flags.json) events.report(*event);
     const auto* finished = std::get_if<JobFinished>(&*event);
     if (!finished) continue;
-    if (finished->computed > 0) keepTimes(kept);
+    if (finished->computed > 0) keepMachineTimes(knownTimes(kept));
     return exitCode(*finished);
   }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/word_list.h"
 #include "core/scene/rig_focus.h"
 
 namespace beam {
@@ -24,8 +25,7 @@ constexpr double kOrthonormal = 1e-3;  // what rounding to four digits leaves
 }  // namespace
 
 bool isPicture(const std::filesystem::path& file) {
-  std::string e = file.extension().string();
-  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string e = lowerCase(file.extension().string());
   return e == ".png" || e == ".jpg" || e == ".jpeg";
 }
 

@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/error.h"
+#include "core/base/word_list.h"
 #include "core/io/file.h"
 #include "core/io/radiance_file.h"
 
@@ -225,9 +225,7 @@ Image<std::uint8_t> readAlpha(const std::filesystem::path& path) {
 }
 
 Image<vec3> readRadiance(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lowerCase(path.extension().string());
   if (extension == ".hdr" || extension == ".pic") return readRadianceHdr(path);
   if (extension != ".exr") bad(path, "expected a panorama as .exr or .hdr");
   const std::vector<std::string> stored = exrChannels(path);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/json_reader.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
 
 #include "core/base/json_words.h"
+#include "core/base/word_list.h"
 #include "core/io/file.h"
 
 namespace beam {
@@ -30,9 +30,7 @@ std::string quoteNonNumbers(const std::string& text) {
     }
     std::size_t end = i;
     while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end]))) ++end;
-    std::string word = text.substr(i, end - i), lower = word;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char l) { return std::tolower(l); });
+    const std::string word = text.substr(i, end - i), lower = lowerCase(word);
     if (lower == "nan" || lower == "inf" || lower == "infinity") {
       const bool minus = !out.empty() && out.back() == '-';
       if (minus) out.pop_back();

@@ -127,8 +127,8 @@ CleanPlan planClean(const Project& project, Progress& progress) {
   return plan;
 }
 
-CleanPlan cleanResults(const fs::path& folder, std::shared_ptr<const PipelineSetup> setup,
-                       Progress& progress) {
+CleanPlan cleanResults(const fs::path& folder, std::shared_ptr<const PipelineSetup> setup, Progress& progress,
+                       const AcceptPlan& accept) {
   Project project = Project::open(folder, setup);
   if (project.readOnly()) {
     throw Error(Error::Kind::Storage,
@@ -147,6 +147,7 @@ CleanPlan cleanResults(const fs::path& folder, std::shared_ptr<const PipelineSet
     Progress once_more = progress.part(0, "");
     plan = planClean(project, once_more);
   }
+  if (accept) accept(plan);
   carryOut(project, plan, progress);
   return plan;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -32,12 +33,16 @@ struct CleanPlan {
 // or cannot be read.
 CleanPlan planClean(const Project& project, Progress& progress);
 
+// May refuse a plan by throwing; nothing is removed then.
+using AcceptPlan = std::function<void(const CleanPlan& plan)>;
+
 // Removes it, by the settings and takes that are in project.json, whose lock it holds meanwhile so that
 // nobody saves others; says what it removed. A result is first renamed out of sight under its own lease, then
 // deleted: after a stop or a kill each is whole or gone, and the next time finishes. Throws as planClean
-// does, Error{Locked} that names the holder while a lease is held, Error{Storage} for a project that cannot
-// be written.
+// does and what `accept` throws of the plan, which is asked when nothing can change it any more;
+// Error{Locked} that names the holder while a lease is held, Error{Storage} for a project that cannot be
+// written.
 CleanPlan cleanResults(const std::filesystem::path& folder, std::shared_ptr<const PipelineSetup> setup,
-                       Progress& progress);
+                       Progress& progress, const AcceptPlan& accept = {});
 
 }  // namespace beam

@@ -28,22 +28,6 @@ class NoPictures final : public FrameSource {
   Image<std::uint8_t> mask(ViewIndex, FrameIndex) const override { return {}; }
 };
 
-// Every finished result, the newest last.
-std::vector<ResultRecord> recordsByAge(const ResultStore& store) {
-  std::vector<std::pair<fs::file_time_type, ResultRecord>> dated;
-  for (const Digest& key : store.keys()) {
-    std::error_code failed;
-    const fs::file_time_type time = fs::last_write_time(store.folderOf(key) / "result.json", failed);
-    if (std::optional<ResultRecord> record = store.record(key); record && !failed)
-      dated.emplace_back(time, std::move(*record));
-  }
-  std::stable_sort(dated.begin(), dated.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<ResultRecord> records;
-  for (auto& [time, record] : dated) records.push_back(std::move(record));
-  return records;
-}
-
 std::size_t digitsAt(std::string_view text, std::size_t at) {
   std::size_t end = at;
   while (end < text.size() && std::isdigit(static_cast<unsigned char>(text[end]))) ++end;
@@ -83,7 +67,7 @@ ImportedCapture captureFromResults(const Project& project) {
   found.set.name = project.name();
   found.set.source = std::make_shared<const NoPictures>();
   std::set<std::string> frames;
-  for (const ResultRecord& record : recordsByAge(project.store())) {
+  for (const ResultRecord& record : project.store().recordsByAge()) {
     const StepShown shown = shownOf(project.setup().stages, record.ingredients.step);
     const fs::path folder = project.store().folderOf(record.key);
     std::error_code failed;

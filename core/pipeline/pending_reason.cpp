@@ -69,20 +69,12 @@ std::map<std::string, std::string> picturesRead(const Project& project, const St
 }
 
 PendingReasons::PendingReasons(const Project& project) : project_(project) {
-  std::map<std::pair<StepId, std::string>, fs::file_time_type> times;
-  for (const Digest& key : project.store().keys()) {
-    std::optional<ResultRecord> record = project.store().record(key);
-    std::error_code failed;
-    const fs::file_time_type time =
-        fs::last_write_time(project.store().folderOf(key) / "result.json", failed);
-    if (!record || failed) continue;
-    const std::pair place(record->ingredients.step, record->frame);
-    const auto [known, fresh] = times.try_emplace(place, time);
-    if (fresh || (!record->lead && known->second <= time)) {
-      known->second = time;
-      newest_[place] = key;
-    }
-    records_.emplace(key, std::move(*record));
+  for (ResultRecord& record : project.store().recordsByAge()) {
+    const std::pair place(record.ingredients.step, record.frame);
+    const Digest key = record.key;
+    // What was made as a lead counts where there is nothing else.
+    if (!newest_.emplace(place, key).second && !record.lead) newest_[place] = key;
+    records_.emplace(key, std::move(record));
   }
 }
 

@@ -117,6 +117,26 @@ std::string stampOf(const fs::path& folder, const ResultRecord& record) {
 
 fs::path ResultStore::folderOf(const Digest& key) const { return project_ / "results" / key.hex(); }
 
+std::optional<fs::file_time_type> ResultStore::publishedAt(const Digest& key) const {
+  std::error_code failed;
+  const fs::file_time_type time = fs::last_write_time(folderOf(key) / kRecordFile, failed);
+  return failed ? std::nullopt : std::optional(time);
+}
+
+std::vector<ResultRecord> ResultStore::recordsByAge() const {
+  std::vector<std::pair<fs::file_time_type, ResultRecord>> dated;
+  for (const Digest& key : keys()) {
+    const std::optional<fs::file_time_type> time = publishedAt(key);
+    if (std::optional<ResultRecord> found = record(key); found && time)
+      dated.emplace_back(*time, std::move(*found));
+  }
+  std::stable_sort(dated.begin(), dated.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<ResultRecord> records;
+  for (auto& [time, found] : dated) records.push_back(std::move(found));
+  return records;
+}
+
 std::vector<Digest> ResultStore::keys() const { return keysIn(project_ / "results", ""); }
 
 std::vector<Digest> ResultStore::leases() const { return keysIn(project_ / "leases", ""); }

@@ -30,6 +30,10 @@ class ResultStore {
   // Whether result.json is there and every file has its size; reads no file's bytes.
   bool has(const Digest& key) const;
   std::optional<ResultRecord> record(const Digest& key) const;
+  // Of result.json, which is written last; empty when there is none.
+  std::optional<std::filesystem::file_time_type> publishedAt(const Digest& key) const;
+  // Of every finished result, the newest last.
+  std::vector<ResultRecord> recordsByAge() const;
   // Folder of a result whose every byte was verified by this process; empty when there is none. A damaged one
   // is moved to quarantine/ (where the project can be written) with a warning and counts as none.
   std::optional<std::filesystem::path> verified(const Digest& key) const;

@@ -43,10 +43,8 @@ Digest surfaceOf(const StepShown& shown, const KeyIngredients& made, const Diges
   return surface == made.upstream.end() ? Digest{} : surface->second;
 }
 
-std::int64_t publishedAt(const fs::path& result) {
-  std::error_code failed;
-  const fs::file_time_type time = fs::last_write_time(result / "result.json", failed);
-  return failed ? 0 : std::chrono::nanoseconds(time.time_since_epoch()).count();
+std::int64_t nanoseconds(const std::optional<fs::file_time_type>& time) {
+  return time ? std::chrono::nanoseconds(time->time_since_epoch()).count() : 0;
 }
 
 std::string textOf(const Leftovers& leftovers) {
@@ -141,7 +139,7 @@ void TakeSurveyor::readRecords(const Project& project, Pass& pass) {
                     found->lead,
                     shown.frame,
                     surfaceOf(shown, found->ingredients, key),
-                    publishedAt(project.store().folderOf(key))};
+                    nanoseconds(project.store().publishedAt(key))};
       record.scores["seconds"] = found->seconds;
       known = records_.insert_or_assign(key, std::move(record)).first;
     }

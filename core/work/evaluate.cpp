@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -75,8 +76,8 @@ RenderRequest picturesFor(const EvaluateRequest& request, const GaussianSequence
   return r;
 }
 
-EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, ComputeDevice& device, Progress& progress) {
-  GroundTruth truth = openGroundTruth(request.ground_truth);
+EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, GroundTruth truth, ComputeDevice& device,
+                                  Progress& progress) {
   align(truth, request.project.capture());
   EvaluateOutcome e;
   if (!request.pictures.empty()) {
@@ -152,18 +153,20 @@ bool hasHeldOutPhotographs(const CaptureSet& capture) {
 }
 
 EvaluateOutcome evaluate(const EvaluateRequest& request, ComputeDevice& device, Progress& progress) {
+  // Opened first: what cannot be scored is refused before anything is told.
+  std::optional<GroundTruth> truth;
+  if (!request.ground_truth.empty()) truth = openGroundTruth(request.ground_truth);
   EvaluateRequest solved = request;
   std::vector<std::string> changes;
   if (request.pictures.empty()) {
     const WantedResults wanted{.frames = request.frames, .materials_if_any = true, .strict = request.strict};
-    if (!request.ground_truth.empty()) openGroundTruth(request.ground_truth);  // refused before it is told
     LastSolved last = lastSolved(request.project, wanted, progress);
     last.tell();
     solved.project = std::move(last.project);
     changes = std::move(last.changes);
   }
-  EvaluateOutcome outcome = request.ground_truth.empty() ? scoreHeldOut(solved, device, progress)
-                                                         : scoreAgainstTruth(solved, device, progress);
+  EvaluateOutcome outcome = truth ? scoreAgainstTruth(solved, std::move(*truth), device, progress)
+                                  : scoreHeldOut(solved, device, progress);
   for (auto& row : motionTable(outcome.each)) outcome.table.push_back(std::move(row));
   outcome.setting_changes = std::move(changes);
   return outcome;

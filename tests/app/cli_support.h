@@ -188,4 +188,22 @@ inline Words tinyTake() {
 // Likewise, and one frame alone.
 inline Words tiny() { return tinyTake() + Words{"--frames", "0"}; }
 
+// A project of the sample with its first frame solved, made once for all tests, which change no result of it.
+class SolvedHouse {
+ public:
+  static const std::filesystem::path& project() {
+    static const SolvedHouse house;
+    return house.project_;
+  }
+
+ private:
+  SolvedHouse() : project_(folder_.path() / "p.beam") {
+    const Words words{"process", SampleHouse::capture().string(), "--out", project_.string()};
+    const Said said = Running(folder_.path(), words + tiny()).wait();
+    if (said.code != 0) throw std::runtime_error("beam process: " + said.err);
+  }
+  TempDir folder_;
+  std::filesystem::path project_;
+};
+
 }  // namespace beam::testing

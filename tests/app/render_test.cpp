@@ -15,18 +15,8 @@ using ::testing::IsSupersetOf;
 
 class Render : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    house_ = std::make_unique<TempDir>();
-    const Said said = Running(house_->path(), Words{"process", SampleHouse::capture().string(), "--out",
-                                                    (house_->path() / "p.beam").string()} +
-                                                  tiny())
-                          .wait();
-    ASSERT_EQ(said.code, 0) << said.err;
-  }
-  static void TearDownTestSuite() { house_.reset(); }
-
   Words command(const char* out, const Words& more) const {
-    return Words{"render",        (house_->path() / "p.beam").string(),
+    return Words{"render",        SolvedHouse::project().string(),
                  "--out",         at(out).string(),
                  "--channels",    "rgb,relight,depth",
                  "--environment", (SampleHouse::capture() / "environment.exr").string(),
@@ -37,9 +27,7 @@ class Render : public ::testing::Test {
   fs::path at(const char* name) const { return folder_.path() / name; }
 
   TempDir folder_;
-  static std::unique_ptr<TempDir> house_;  // with a solved project, p.beam
 };
-std::unique_ptr<TempDir> Render::house_;
 
 TEST_F(Render, WritesTheLayersOfACameraAndFrameIntoOneFile) {
   const Said said = beam(command("out", {"--layers"}));

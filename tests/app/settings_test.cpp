@@ -21,16 +21,7 @@ using Json = nlohmann::json;
 // A project with one frame solved as far as the surface, made once and copied for each test.
 class Settings : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    house_ = std::make_unique<TempDir>();
-    const Said said = Running(house_->path(), Words{"process", SampleHouse::capture().string(), "--out",
-                                                    (house_->path() / "p.beam").string()} +
-                                                  tiny())
-                          .wait();
-    ASSERT_EQ(said.code, 0) << said.err;
-  }
-  static void TearDownTestSuite() { house_.reset(); }
-  void SetUp() override { fs::copy(house_->path() / "p.beam", project(), fs::copy_options::recursive); }
+  void SetUp() override { fs::copy(SolvedHouse::project(), project(), fs::copy_options::recursive); }
 
   Said beam(const Words& words) const { return Running(folder_.path(), words).wait(); }
   std::string project() const { return (folder_.path() / "p.beam").string(); }
@@ -45,7 +36,6 @@ class Settings : public ::testing::Test {
   }
 
   TempDir folder_;
-  static inline std::unique_ptr<TempDir> house_;
 };
 
 TEST_F(Settings, OfAProjectAreSeenWithTheirOriginAndOfNoneWithThePresets) {

@@ -19,18 +19,8 @@ void put(const fs::path& file, const std::string& text) { std::ofstream(file) <<
 
 class Target : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    house_ = std::make_unique<TempDir>();
-    const Said said = Running(house_->path(), Words{"process", SampleHouse::capture().string(), "--out",
-                                                    (house_->path() / "p.beam").string()} +
-                                                  tiny())
-                          .wait();
-    ASSERT_EQ(said.code, 0) << said.err;
-  }
-  static void TearDownTestSuite() { house_.reset(); }
-
   Said beam(const Words& words) const { return Running(folder_.path(), words).wait(); }
-  std::string project() const { return (house_->path() / "p.beam").string(); }
+  std::string project() const { return SolvedHouse::project().string(); }
   std::string at(const char* name) const { return (folder_.path() / name).string(); }
 
   // Every command that writes, with `place` as where.
@@ -60,9 +50,7 @@ class Target : public ::testing::Test {
   }
 
   TempDir folder_;
-  static std::unique_ptr<TempDir> house_;  // with a solved project, p.beam
 };
-std::unique_ptr<TempDir> Target::house_;
 
 TEST_F(Target, InACaptureIsRefusedByEveryCommand) {
   const fs::path capture = SampleHouse::capture();
