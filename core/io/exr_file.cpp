@@ -14,6 +14,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/io/content_seal.h"
 #include "core/io/exr_header.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
@@ -170,7 +171,7 @@ void writeExr(const std::filesystem::path& path, int width, int height, std::spa
   {
     Imf::Header header(width, height);
     header.compression() = Imf::PIZ_COMPRESSION;
-    for (const auto& [name, text] : notes) header.insert(name, Imf::StringAttribute(text));
+    for (const auto& [name, text] : sealable(notes)) header.insert(name, Imf::StringAttribute(text));
     Imf::FrameBuffer frame;
     std::vector<half> halves;
     halves.reserve(plane * halves_of);  // slices point into it
@@ -195,6 +196,7 @@ void writeExr(const std::filesystem::path& path, int width, int height, std::spa
       file.writePixels(std::min(kRowsAtOnce, height - y));
     }
   }
+  seal(stream.bytes);
   writeFileAtomically(path, stream.bytes);
 }
 

@@ -16,8 +16,7 @@ namespace beam {
 // compression other than NONE, RLE, ZIPS, ZIP and PIZ, or sizes that the bytes cannot hold.
 void checkExrHeader(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
-// The string attributes of a file whose last block ends where the file does. Throws Error{Data} as above,
-// also where an end is missing or something follows it. Decodes nothing.
+// The string attributes of the header. Throws Error{Data} as above. Decodes nothing.
 FileNotes exrNotes(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 // Throws Error{Data} that names the limit where a picture of `channels` channels with `pixel_bytes` together

@@ -8,9 +8,9 @@
 
 namespace beam {
 
-// The notes of a PNG picture (tEXt, checksums of all chunks compared), an EXR picture (string attributes) or
-// a PLY file (comments, of a table whose lists are triangles) that is whole: its end is where its header
-// says. Empty for anything else: no such file, half a one, another format, one without notes.
+// The notes of a PNG (tEXt), EXR (string attributes) or PLY file (comments) of ours whose bytes are those
+// that were written (content_seal.h). Empty for anything else: no such file, a changed one, one without
+// notes.
 FileNotes notesIn(const std::filesystem::path& file);
 
 }  // namespace beam

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/word_list.h"
+#include "core/io/content_seal.h"
 #include "core/io/file.h"
 #include "core/io/radiance_file.h"
 
@@ -176,8 +177,9 @@ void writeEncoded(const std::filesystem::path& path, const cv::Mat& m, bool srgb
   if (!cv::imencode(".png", m, bytes)) throw Error(Error::Kind::Bug, "cannot encode a PNG picture");
   std::vector<unsigned char> chunks;
   if (srgb && !notes.empty()) appendPngChunk(chunks, "sRGB", std::string(1, '\0'));  // perceptual intent
-  for (const auto& [name, text] : notes) appendPngChunk(chunks, "tEXt", name + '\0' + text);
+  for (const auto& [name, text] : sealable(notes)) appendPngChunk(chunks, "tEXt", name + '\0' + text);
   bytes.insert(bytes.begin() + kHeaderEnd, chunks.begin(), chunks.end());
+  seal(std::as_writable_bytes(std::span(bytes)));
   writeFileAtomically(path, std::as_bytes(std::span(bytes)));
 }
 

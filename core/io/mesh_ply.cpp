@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/io/content_seal.h"
 #include "core/io/file.h"
 #include "core/io/ply_file.h"
 
@@ -77,15 +78,15 @@ std::vector<vec2> uvOf(const PlyElement& vertex) {
 // The bytes of a mesh's file, a piece at a time.
 class MeshPieces {
  public:
-  MeshPieces(const Mesh& mesh, const MeshPlyWriting& how)
+  MeshPieces(const Mesh& mesh, const FileNotes& notes, const Progress* progress)
       : mesh_(mesh),
-        progress_(how.progress),
+        progress_(progress),
         normals_(!mesh.vertices.empty() && mesh.normals.size() == mesh.vertices.size()),
         uv_(!mesh.vertices.empty() && mesh.uv.size() == mesh.vertices.size()) {
     piece_ = fmt::format(
         "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty float x\nproperty float "
         "y\nproperty float z\n{}{}element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        plyComments(how.notes), mesh.vertices.size(),
+        plyComments(notes), mesh.vertices.size(),
         normals_ ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
         uv_ ? "property float s\nproperty float t\n" : "", mesh.triangles.size());
   }
@@ -116,12 +117,21 @@ class MeshPieces {
   std::string piece_;
 };
 
+Digest digestOfMesh(const Mesh& mesh, const FileNotes& notes, const Progress* progress) {
+  MeshPieces pieces(mesh, notes, progress);
+  Hasher hasher;
+  for (std::string_view piece = pieces.next(); !piece.empty(); piece = pieces.next()) hasher.add(piece);
+  return hasher.digest();
+}
+
 }  // namespace
 
 void writeMeshPly(const std::filesystem::path& path, const Mesh& mesh, const MeshPlyWriting& how) {
   requireRowsWithin(mesh.vertices.size(), how.most_rows, "vertex", path);
   requireRowsWithin(mesh.triangles.size(), how.most_rows, "face", path);
-  MeshPieces pieces(mesh, how);
+  FileNotes notes = sealable(how.notes);
+  if (!notes.empty()) notes = sealed(notes, digestOfMesh(mesh, notes, how.progress));
+  MeshPieces pieces(mesh, notes, how.progress);
   writeFileAtomically(path, [&] { return pieces.next(); });
 }
 

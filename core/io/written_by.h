@@ -15,7 +15,8 @@ namespace beam {
 // "BEAM Studio, beam render" of "render".
 std::string writerOf(std::string_view command);
 
-// Whether the beginning of `file` names `command`; false also for what cannot be read.
+// Whether the beginning of `file` says so in the way of its format: that a text speaks of the program is not
+// enough. False also for what cannot be read.
 bool isWrittenBy(const std::filesystem::path& file, std::string_view command);
 
 // What a file says of itself beside its data: a name of ASCII letters and '_', and a text, each.

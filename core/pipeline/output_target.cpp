@@ -6,11 +6,12 @@
 
 #include <cerrno>
 #include <cstring>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/io/capture_reader.h"
 #include "core/io/written_by.h"
-#include "core/pipeline/project.h"
+#include "core/pipeline/project_history.h"
 
 namespace beam {
 namespace {
@@ -36,28 +37,36 @@ fs::path resolved(const fs::path& place) {
                           place.string(), what, owner.string()));
 }
 
-void requireFolder(const fs::path& folder) {
+enum class Making { Now, Later };
+
+// What is there of `folder` can be gone into and written into.
+void requireFolder(const fs::path& folder, Making making = Making::Now) {
   std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (!fs::is_directory(folder, failed)) {
+  fs::path there = folder;
+  if (making == Making::Now) fs::create_directories(folder, failed);
+  while (making == Making::Later && there.has_parent_path() && !fs::exists(fs::symlink_status(there, failed)))
+    there = there.parent_path();
+  if (!fs::is_directory(there, failed)) {
     throw Error(Error::Kind::Storage,
-                fmt::format("\"{}\" cannot be made: expected a folder or a free name", folder.string()));
+                fmt::format("\"{}\" cannot be made: \"{}\" is no folder", folder.string(), there.string()));
   }
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+  if (::access(there.c_str(), W_OK | X_OK) != 0) {
     throw Error(Error::Kind::Storage,
-                fmt::format("cannot write into \"{}\": {}", folder.string(), std::strerror(errno)));
+                fmt::format("cannot write into \"{}\": {}", there.string(), std::strerror(errno)));
   }
 }
 
 void requireOwn(const fs::path& file, const OutputRule& rule) {
   std::error_code failed;
   const fs::file_status there = fs::status(file, failed);
-  if (!fs::exists(there)) return;
-  if (!fs::is_regular_file(there)) {
+  const bool dangling = !fs::exists(there) && fs::is_symlink(fs::symlink_status(file, failed));
+  if (!fs::exists(there) && !dangling) return;
+  if (!dangling && !fs::is_regular_file(there)) {
     throw Error(Error::Kind::Usage,
                 fmt::format("\"{}\" is a folder or a device; expected the name of a file", file.string()));
   }
-  if (rule.force || fs::file_size(file, failed) == 0 || isWrittenBy(file, rule.command)) return;
+  if (rule.force) return;
+  if (!dangling && (fs::file_size(file, failed) == 0 || isWrittenBy(file, rule.command))) return;
   throw Error(
       Error::Kind::Usage,
       fmt::format("\"{}\" is there and was not written by beam {}; choose another name, or replace it "
@@ -73,7 +82,7 @@ void requireOutside(const fs::path& place) {
   }
   fs::path at = resolved(place);
   for (;; at = at.parent_path()) {
-    if (Project::isProject(at)) liesIn(place, at, "project");
+    if (looksLikeProject(at)) liesIn(place, at, "project");
     if (isCapture(at)) liesIn(place, at, "capture");
     if (at == at.parent_path()) return;
   }
@@ -88,7 +97,15 @@ void requireFileTarget(const fs::path& file, const OutputRule& rule) {
 void requireFolderTarget(const fs::path& folder, std::span<const fs::path> files, const OutputRule& rule) {
   requireOutside(folder);
   requireFolder(folder);
-  for (const fs::path& file : files) requireOwn(folder / file, rule);
+  std::set<fs::path> below;
+  for (const fs::path& file : files) {
+    const fs::path place = (folder / file).parent_path();
+    if (below.insert(place).second && place != folder) {
+      requireOutside(place);
+      requireFolder(place, Making::Later);
+    }
+    requireOwn(folder / file, rule);
+  }
 }
 
 }  // namespace beam

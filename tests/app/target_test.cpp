@@ -69,6 +69,49 @@ TEST_F(Target, ThroughALinkIsWhereTheLinkLeads) {
   expectRefused(at("link/dataset.json"), at("link/out"), SampleHouse::capture(), "capture");
 }
 
+TEST_F(Target, BelowTheFolderThatWasGivenIsLookedAtAsWell) {
+  const fs::path capture = SampleHouse::capture();
+  const auto before = filesIn(capture);
+  const auto renderTo = [&](const char* out) {
+    return beam({"render", project(), "--channels", "rgb,mesh", "--out", at(out)});
+  };
+  fs::create_directories(at("a/rgb"));
+  fs::create_directory_symlink(capture, at("a/rgb/test00"));
+  fs::create_directories(at("b"));
+  fs::create_directory_symlink(SolvedHouse::project(), at("b/mesh"));
+  for (const char* out : {"a", "b"}) {
+    const Said said = renderTo(out);
+    EXPECT_EQ(said.code, 2) << out;
+    EXPECT_THAT(said.err, HasSubstr("which is never written")) << out;
+  }
+  put(at("c"), "");
+  fs::create_directories(at("d"));
+  put(at("d/rgb"), "my own words");
+  EXPECT_EQ(renderTo("d").code, 74) << "a file where a folder is wanted";
+  EXPECT_FALSE(fs::exists(at("d/mesh"))) << "before the work";
+  EXPECT_EQ(filesIn(capture), before);
+}
+
+TEST_F(Target, InAProjectThatLostItsDocumentIsRefused) {
+  fs::create_directories(at("lost.beam"));
+  fs::copy(SolvedHouse::project() / "results", at("lost.beam/results"), fs::copy_options::recursive);
+  const Said said = beam({"export", project(), "--out", at("lost.beam/results/mine")});
+  EXPECT_EQ(said.code, 2) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("lies in the project"));
+}
+
+TEST_F(Target, ATextThatSpeaksOfTheProgramAndALinkToNowhereAreNobodysToReplace) {
+  const Words report = {"report", project(), "--out", at("notes.html")};
+  put(at("notes.html"), "BEAM Studio, beam report: what I think of it");
+  EXPECT_EQ(beam(report).code, 2);
+  EXPECT_THAT(textOf(at("notes.html")), HasSubstr("what I think"));
+  fs::remove(at("notes.html"));
+  fs::create_symlink("away.html", at("notes.html"));
+  EXPECT_EQ(beam(report).code, 2);
+  EXPECT_TRUE(fs::is_symlink(at("notes.html")));
+  EXPECT_EQ(beam(report + Words{"--force"}).code, 0);
+}
+
 TEST_F(Target, ThatAnotherWroteIsReplacedWithForceAlone) {
   const std::string capture = SampleHouse::capture().string();
   for (const Words& words :
