@@ -13,15 +13,15 @@ namespace {
 
 bool toFile(const AnswerFlags& flags) { return !flags.json_file.empty() && flags.json_file != "-"; }
 
+}  // namespace
+
 std::string signedBy(const std::string& command, const std::string& json) {
   using Json = nlohmann::ordered_json;
   const Json content = Json::parse(json);
   Json whole = {{"written_by", {{"program", writerOf(command)}}}};
   whole.update(content);
-  return whole.dump(1);
+  return whole.dump(1, ' ', false, Json::error_handler_t::replace);
 }
-
-}  // namespace
 
 void addAnswerFlags(CLI::App& command, AnswerFlags& flags) {
   command.add_flag("--json", flags.json, "Print JSON instead of words");

@@ -19,6 +19,9 @@ struct AnswerFlags {
 // --json, --json-file FILE and --force.
 void addAnswerFlags(CLI::App& command, AnswerFlags& flags);
 
+// `json`, an object, with who wrote it in front.
+std::string signedBy(const std::string& command, const std::string& json);
+
 // Before the work: throws what requireFileTarget does of the file.
 void requireAnswerTarget(const AnswerFlags& flags, const std::string& command);
 

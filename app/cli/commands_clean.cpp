@@ -112,6 +112,18 @@ std::string lastOnesText(const CleanPlan& plan) {
       fmt::join(stages, ", "));
 }
 
+std::string goneText(const CleanPlan& plan) {
+  constexpr std::size_t kMostNamed = 3;
+  if (plan.gone.empty()) return {};
+  const std::size_t named = std::min(kMostNamed, plan.gone.size());
+  const std::string more =
+      plan.gone.size() > named ? fmt::format(" and {} more", plan.gone.size() - named) : std::string();
+  return fmt::format(
+      "results that would go were made of what the capture does not have now: {}{}; put it back, for with it "
+      "they may be in force",
+      fmt::join(plan.gone.begin(), plan.gone.begin() + static_cast<std::ptrdiff_t>(named), ", "), more);
+}
+
 int runClean(const CleanFlags& flags, CommandContext& context) {
   const auto& pipeline = context.services.pipeline;
   requireAnswerTarget(flags.answer, kCommand);
@@ -120,12 +132,15 @@ int runClean(const CleanFlags& flags, CommandContext& context) {
       flags.dry_run ? "interrupted; nothing was removed"
                     : "interrupted; results in force are untouched, what is left of the others the next beam "
                       "clean removes";
-  const auto accept = [&](const CleanPlan& plan) {
-    const std::string last_ones = lastOnesText(plan);
-    if (last_ones.empty()) return;
+  const auto refuse = [&](Error::Kind kind, const std::string& why) {
+    if (why.empty()) return;
     if (!flags.dry_run && !flags.answer.force)
-      throw Error(Error::Kind::Usage, fmt::format("{}; --force removes them all the same", last_ones));
-    context.console.warning(last_ones);
+      throw Error(kind, fmt::format("{}; --force removes them all the same", why));
+    context.console.warning(why);
+  };
+  const auto accept = [&](const CleanPlan& plan) {
+    refuse(Error::Kind::Data, goneText(plan));
+    refuse(Error::Kind::Usage, lastOnesText(plan));
   };
   const CleanPlan plan = flags.dry_run ? planClean(Project::open(flags.project, pipeline), progress)
                                        : cleanResults(flags.project, pipeline, progress, accept);
@@ -147,7 +162,8 @@ void addCleanCommand(CLI::App& app, CommandContext& context) {
   command->add_flag("--dry-run", flags->dry_run, "Say what would be removed, and remove nothing");
   addAnswerFlags(*command, flags->answer);
   command->get_option("--force")->description(
-      "Replace files that this command did not write; remove also the last results of a stage");
+      "Replace files that this command did not write; remove also the last results of a stage and those of "
+      "pictures that are gone");
   command->callback(
       [flags, &context] { context.action = [flags, &context] { return runClean(*flags, context); }; });
 }

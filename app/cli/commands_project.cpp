@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // beam process, new, run, status, stages: everything about a project and its runs.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/pipeline/path_kind.h"
 #include "core/pipeline/project_report.h"
+#include "core/pipeline/setting_changes.h"
 #include "core/pipeline/settings_report.h"
 #include "core/work/quality_history.h"
 
@@ -60,6 +62,29 @@ void tellOtherPlacement(const std::optional<CapturePlacement>& before, const Pro
                               toText(now), toText(*before)));
 }
 
+void tellChanges(const Project& before, const Project& project, bool dry_run, Console& console) {
+  tellOtherPlacement(before.world(), project, console);
+  std::vector<std::string> changes;
+  try {
+    changes = settingChanges(before, project);
+  } catch (const Error&) {
+    return;  // what was saved before could not be, and was mended
+  }
+  if (!changes.empty())
+    console.info(fmt::format("{}: {}", dry_run ? "would be saved" : "saved", fmt::join(changes, ", ")));
+}
+
+// Where project.json and the capture are not of one another any more.
+void warnOfCapture(const Project& project, Console& console) {
+  if (const std::string change = project.captureChange(); !change.empty()) {
+    console.warning(
+        fmt::format("the capture \"{}\" is not described as it was when the project took it in: {}",
+                    project.captureFolder().string(), change));
+  }
+  for (const std::string& take : takesNotUnderstood(project.document().takes, project.capture().frames))
+    console.warning(take);
+}
+
 std::string statusWords(const Project& project, const DiskUse& use) {
   std::string text = statusText(project);
   if (const std::string disk = diskText(use); !disk.empty()) text += fmt::format("\n{}", disk);
@@ -97,13 +122,13 @@ void addProcessCommand(CLI::App& app, CommandContext& context) {
     context.action = [a, &context] {
       const bool made = !Project::isProject(a->project);
       Project project = projectFor(a->project, a->capture, context.services);
-      const std::optional<CapturePlacement> before = project.world();
+      const Project before = project;
       applyFlags(project, a->project_flags);
       if (made)
         tellPlacement(project, context.console);
       else
-        tellOtherPlacement(before, project, context.console);
-      return runProject(std::move(project), a->run, context);
+        tellChanges(before, project, a->run.dry_run, context.console);
+      return runProject(std::move(project), a->run, "process", context);
     };
   });
 }
@@ -140,10 +165,12 @@ void addRunCommand(CLI::App& app, CommandContext& context) {
   command->callback([a, &context] {
     context.action = [a, &context] {
       Project project = Project::open(a->project, context.services.pipeline);
-      const std::optional<CapturePlacement> before = project.world();
+      const Project before = project;
       applyFlags(project, a->project_flags);
-      tellOtherPlacement(before, project, context.console);
-      return runProject(std::move(project), a->run, context);
+      warnOfCapture(project, context.console);
+      if (!project.captureChange().empty()) project.acceptCaptureChange();
+      tellChanges(before, project, a->run.dry_run, context.console);
+      return runProject(std::move(project), a->run, "run", context);
     };
   });
 }
@@ -158,6 +185,7 @@ void addStatusCommand(CLI::App& app, CommandContext& context) {
     context.action = [folder, flags, &context] {
       const Project project = Project::open(*folder, context.services.pipeline);
       requireAnswerTarget(*flags, "status");
+      warnOfCapture(project, context.console);
       context.interrupted = "interrupted; nothing was written";
       Progress progress(context.stop, context.console.listener());
       const DiskUse use = diskUse(project, progress);

@@ -39,7 +39,10 @@ void ConsoleReporter::show(const StepProgress& e) {
 void ConsoleReporter::show(const StepFinished& e) {
   if (!e.reused) return console_.info(fmt::format("{}: done in {:.1f} s", nameOf(e.ref), e.seconds));
   console_.detail(fmt::format("{}: reused", nameOf(e.ref)));
-  ++reused_[std::string(e.ref.step.text().substr(0, e.ref.step.text().find('.')))];
+  const std::string_view stage = e.ref.step.stage();
+  const auto known =
+      std::find_if(reused_.begin(), reused_.end(), [&](const auto& r) { return r.first == stage; });
+  known == reused_.end() ? void(reused_.emplace_back(stage, 1)) : void(++known->second);
 }
 
 void ConsoleReporter::tellReused() {

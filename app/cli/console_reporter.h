@@ -3,8 +3,9 @@
 // stage for what was there already, and a summary.
 #pragma once
 
-#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/cli/console.h"
 #include "core/pipeline/job_event.h"
@@ -30,7 +31,7 @@ class ConsoleReporter {
 
   Console& console_;
   bool answers_;
-  std::map<std::string, int> reused_;  // results by stage
+  std::vector<std::pair<std::string, int>> reused_;  // results of stages, in the order of the run
 };
 
 // Exit code of a run: 0 done, 10 some frames failed, 75 interrupted and resumable, else of the failure.

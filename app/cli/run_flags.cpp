@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "app/cli/answer.h"
 #include "app/cli/console_reporter.h"
 #include "app/cli/json_reporter.h"
 #include "core/base/error.h"
@@ -41,7 +42,8 @@ void applySettings(Project& project, const ProjectFlags& flags) {
     for (const auto& [key, value] : std::map(project.document().settings)) project.reset(key);
   }
   for (const std::string& key : flags.unset) {
-    project.value(key);  // refuses unknown ones
+    // One that is set can be taken out whatever it is.
+    if (!project.document().settings.contains(key)) project.value(key);  // refuses unknown ones
     for (const std::string& assignment : flags.set) {
       if (keyOf(assignment) != key) continue;
       throw Error(Error::Kind::Usage,
@@ -69,9 +71,10 @@ StepTimes knownTimes(const Project& project) {
   return times;
 }
 
-int tellPlan(const Project& project, const RunRequest& request, const RunFlags& flags, Console& console) {
+int tellPlan(const Project& project, const RunRequest& request, const RunFlags& flags,
+             const std::string& command, Console& console) {
   const RunEstimate estimate = estimateRun(project, request, knownTimes(project));
-  console.print(flags.json ? toJson(estimate) : toText(estimate));
+  console.print(flags.json ? signedBy(command, toJson(estimate)) : toText(estimate));
   return 0;
 }
 
@@ -151,10 +154,10 @@ void applyFlags(Project& project, const ProjectFlags& flags) {
   if (flags.unit) project.setUnit(parseUnit(*flags.unit));
 }
 
-int runProject(Project project, const RunFlags& flags, CommandContext& context) {
+int runProject(Project project, const RunFlags& flags, const std::string& command, CommandContext& context) {
   RunRequest request{.stage = flags.stage, .until = flags.until, .every = flags.every};
   if (!isAllFrames(flags.frames)) request.frames = parseFrameList(flags.frames, project.capture().frames);
-  if (flags.dry_run) return tellPlan(project, request, flags, context.console);
+  if (flags.dry_run) return tellPlan(project, request, flags, command, context.console);
   makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
   std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   project.save();

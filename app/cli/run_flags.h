@@ -48,6 +48,6 @@ void applyFlags(Project& project, const ProjectFlags& flags);
 
 // Saves the project, runs it and reports until the end; the exit code. What cannot be run is not saved. A dry
 // run says what there is to do and saves nothing.
-int runProject(Project project, const RunFlags& flags, CommandContext& context);
+int runProject(Project project, const RunFlags& flags, const std::string& command, CommandContext& context);
 
 }  // namespace beam

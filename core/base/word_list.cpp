@@ -2,6 +2,7 @@
 #include "core/base/word_list.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace beam {
 
@@ -27,6 +28,28 @@ std::string lowerCase(std::string_view word) {
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return lower;
+}
+
+bool isUtf8(std::string_view text) {
+  struct Form {
+    unsigned char mask, lead;
+    std::uint32_t least;  // smaller values have a shorter form
+  };
+  constexpr Form kForms[] = {{0x80, 0, 0}, {0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
+  for (std::size_t i = 0; i < text.size();) {
+    const auto first = static_cast<unsigned char>(text[i++]);
+    std::size_t more = 0;
+    while (more < 4 && (first & kForms[more].mask) != kForms[more].lead) ++more;
+    if (more == 4 || text.size() - i < more) return false;
+    std::uint32_t value = first & static_cast<unsigned char>(~kForms[more].mask);
+    for (std::size_t k = 0; k < more; ++k) {
+      const auto byte = static_cast<unsigned char>(text[i++]);
+      if ((byte & 0xc0) != 0x80) return false;
+      value = value << 6 | (byte & 0x3fu);
+    }
+    if (value < kForms[more].least || value > 0x10ffff || (value >= 0xd800 && value < 0xe000)) return false;
+  }
+  return true;
 }
 
 }  // namespace beam

@@ -15,4 +15,7 @@ std::vector<std::string> splitAtCommas(std::string_view text);
 // Of A to Z alone.
 std::string lowerCase(std::string_view word);
 
+// Whether it is whole UTF-8 (RFC 3629): no overlong form, surrogate or value above 10FFFF.
+bool isUtf8(std::string_view text);
+
 }  // namespace beam

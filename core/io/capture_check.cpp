@@ -222,7 +222,7 @@ std::string toJson(const CheckReport& r) {
                    {"high", jsonOf(r.splats->high)}};
   }
   j["warnings"] = r.warnings;
-  return j.dump(2);
+  return j.dump(2, ' ', false, decltype(j)::error_handler_t::replace);
 }
 
 }  // namespace beam

@@ -11,6 +11,7 @@
 #include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/word_list.h"
 #include "core/io/capture_description.h"
 #include "core/io/capture_pictures.h"
 #include "core/io/mesh_ply.h"
@@ -233,6 +234,18 @@ CapturePlacement foundPlacement(const CaptureSet& turned, const UnitHints& hints
   return placementOf(subject, hints, turned.up);
 }
 
+// All that is written of a capture names them, and JSON is UTF-8.
+void requireUtf8(const CaptureSet& set, const fs::path& folder) {
+  const auto require = [&](const char* what, const std::string& name) {
+    if (isUtf8(name)) return;
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\": the {} \"{}\" is not named in UTF-8; rename its files", folder.string(),
+                            what, name));
+  };
+  for (const View& view : set.views) require("camera", view.name);
+  for (const std::string& frame : set.frames) require("frame", frame);
+}
+
 ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxis up,
                              const ImportOptions& options) {
   ImportedCapture out;
@@ -247,6 +260,7 @@ ImportedCapture importedFrom(CaptureDescription d, const fs::path& folder, UpAxi
     set.views.push_back({c.name, c.camera, c.split});
     files.push_back(filesOf(c, set.frames, folder));
   }
+  requireUtf8(set, folder);
   const MaskKind kind = maskKindOf(files);
   warnOfMissingFrames(d, set.frames);
   warnOfGaps(d, files, set.frames, kind);

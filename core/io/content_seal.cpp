@@ -75,7 +75,8 @@ void seal(std::span<std::byte> file) {
   const auto* chunk = reinterpret_cast<const unsigned char*>(file.data() + place->chunk_type);
   const auto sum =
       static_cast<std::uint32_t>(::crc32_z(0, chunk, place->digits + kDigits - place->chunk_type));
-  for (std::size_t k = 0; k < kPngChecksum; ++k) ours[kDigits + k] = static_cast<std::byte>(sum >> (24 - 8 * k));
+  for (std::size_t k = 0; k < kPngChecksum; ++k)
+    ours[kDigits + k] = static_cast<std::byte>(sum >> (24 - 8 * k));
 }
 
 bool isSealed(const std::filesystem::path& file) {

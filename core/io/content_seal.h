@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture or mesh that says the digest of its own bytes, as a note, taken with '0' in
-// place of each digit (and of each byte of PNG's checksum of the note): what was cut, damaged or written anew by another program is known by it.
+// place of each digit (and of each byte of PNG's checksum of the note): what was cut, damaged or written anew
+// by another program is known by it.
 #pragma once
 
 #include <cstddef>

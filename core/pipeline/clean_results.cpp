@@ -2,12 +2,18 @@
 #include "core/pipeline/clean_results.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/pipeline/input_digests.h"
 #include "core/pipeline/project_document.h"
+#include "core/pipeline/stage_registry.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -24,6 +30,9 @@ void requireInputs(const Project& project) {
     project.requireCapture();
     project.capture();
     project.environmentFile();
+    const std::vector<std::string> odd =
+        takesNotUnderstood(project.document().takes, project.capture().frames);
+    if (!odd.empty()) throw Error(Error::Kind::Data, fmt::format("{}", fmt::join(odd, "; ")));
   } catch (const Error& gone) {
     if (gone.kind() != Error::Kind::Data) throw;
     throw untold(gone.what());
@@ -38,6 +47,65 @@ void requireReadable(const std::vector<std::string>& unreadable) {
       fmt::format("the picture \"{}\"{} is there and cannot be read; make it readable, or take it "
                   "out of the capture",
                   unreadable.front(), more));
+}
+
+// Of one capture: what results were made of and it does not have.
+class GoneInputs {
+ public:
+  explicit GoneInputs(const Project& project) : project_(project), folder_(project.captureFolder()) {
+    for (const View& view : project.capture().views) views_.insert(view.name);
+    points_ = !project.capture().seed_points.position_m.empty();
+    if (const std::string other = project.captureChange(); !other.empty())
+      gone_.insert(fmt::format("the description of the capture as it was ({})", other));
+  }
+
+  void add(const ResultRecord& record) {
+    for (const auto& [picture, digest] : record.pictures) {
+      // A capture without files names the view.
+      if (!views_.contains(picture) && !isThere(picture))
+        gone_.insert(fmt::format("the picture {}", picture));
+    }
+    const StepShown shown = shownOf(project_.setup().stages, record.ingredients.step);
+    if (!shown.cameras_file.empty()) addCameras(project_.store().folderOf(record.key) / shown.cameras_file);
+  }
+
+  std::vector<std::string> words() const { return {gone_.begin(), gone_.end()}; }
+
+ private:
+  void addCameras(const fs::path& file) {
+    try {
+      const std::string text = readTextFile(file);
+      for (const View& view : viewsOfCalibration(text))
+        if (!views_.contains(view.name)) gone_.insert(fmt::format("the camera {}", view.name));
+      if (!points_ && seedPointsOfCalibration(text) > 0) gone_.insert("the seed points");
+    } catch (const Error&) {
+      // A damaged result tells nothing.
+    }
+  }
+
+  bool isThere(const std::string& picture) {
+    const auto [known, is_new] = there_.emplace(picture, false);
+    std::error_code out_of_reach;
+    if (is_new) known->second = fs::exists(folder_ / picture, out_of_reach) || out_of_reach;
+    return known->second;
+  }
+
+  const Project& project_;
+  fs::path folder_;
+  std::set<std::string> views_, gone_;
+  std::map<std::string, bool> there_;
+  bool points_ = false;
+};
+
+std::vector<std::string> goneOf(const Project& project, const DiskUse& use, const Progress& progress) {
+  if (use.others().count == 0) return {};
+  GoneInputs gone(project);
+  for (const ResultUse& result : use.results) {
+    if (result.in_force) continue;
+    progress.check();
+    if (const std::optional<ResultRecord> record = project.store().record(result.key)) gone.add(*record);
+  }
+  return gone.words();
 }
 
 // A run that stands between two steps holds none for a moment: what it then misses, it says.
@@ -112,6 +180,7 @@ CleanPlan planClean(const Project& project, Progress& progress) {
   CleanPlan plan;
   plan.use = diskUse(project, progress);
   requireReadable(plan.use.unreadable);
+  plan.gone = goneOf(project, plan.use, progress);
   const ResultStore& store = project.store();
   const bool all_told = std::all_of(plan.use.stages.begin(), plan.use.stages.end(),
                                     [](const StageUse& stage) { return stage.blocked_reason.empty(); });

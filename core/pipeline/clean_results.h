@@ -23,6 +23,9 @@ struct CleanPlan {
   DiskAmount half_built;         // folders of builders that were killed, of a clean that was as well
   DiskAmount set_aside;          // damaged results in quarantine/
   std::vector<std::filesystem::path> set_aside_folders;
+  // What results that go were made of and the capture does not have now, in words: "the picture
+  // cam00/000.png", "the camera cam05". Away for the moment, perhaps: `accept` decides.
+  std::vector<std::string> gone;
 
   // Of the results that go, half-built folders and quarantine/; failures and leases are some bytes.
   std::uint64_t freedBytes() const;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <istream>
 #include <locale>
 #include <span>
@@ -108,6 +109,12 @@ std::vector<View> viewsOfCalibration(const std::string& text) {
     views.push_back(std::move(v));
   }
   return views;
+}
+
+std::size_t seedPointsOfCalibration(const std::string& text) {
+  constexpr std::string_view kBefore = "\nseed points ";
+  const std::size_t at = text.rfind(kBefore);
+  return at == std::string::npos ? 0 : std::strtoull(text.c_str() + at + kBefore.size(), nullptr, 10);
 }
 
 Digest InputDigests::calibration(const CaptureSet& capture) const {

@@ -21,6 +21,7 @@ std::string calibrationText(const CaptureSet& capture);
 inline constexpr const char* kCamerasFile = "cameras.txt";  // of the capture's import: that text
 // Its cameras back. Throws Error{Data} for a line that it does not understand.
 std::vector<View> viewsOfCalibration(const std::string& text);
+std::size_t seedPointsOfCalibration(const std::string& text);  // how many; 0 also where it does not say
 
 // What a picture of a frame and its mask say.
 struct PictureDigest {

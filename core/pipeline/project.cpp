@@ -64,7 +64,9 @@ Project Project::open(const fs::path& folder, std::shared_ptr<const PipelineSetu
                             "\"{}\" --capture FOLDER",
                             folder.string(), folder.string()));
   }
-  return Project(folder, readProjectDocument(folder), std::move(setup));
+  Project project(folder, readProjectDocument(folder), std::move(setup));
+  project.read_hold_out_ = project.document_.hold_out;
+  return project;
 }
 
 Project Project::create(const fs::path& folder, const ProjectDocument& document,
@@ -78,7 +80,7 @@ Project Project::create(const fs::path& folder, const ProjectDocument& document,
   }
   Project project(folder, document, std::move(setup));
   if (project.document_.id.empty()) project.document_.id = newProjectId();
-  project.preset();  // refuses unknown ones
+  project.setPreset(document.preset);  // refuses unknown ones
   return project;
 }
 
@@ -98,8 +100,15 @@ bool Project::readOnly() const {
 
 const std::map<std::string, FieldValue>& Project::preset() const {
   if (preset_loaded_ != document_.preset) {
-    preset_ = setup_->presets.empty() ? std::map<std::string, FieldValue>{}
-                                      : loadPreset(setup_->presets, document_.preset);
+    try {
+      preset_ = setup_->presets.empty() ? std::map<std::string, FieldValue>{}
+                                        : loadPreset(setup_->presets, document_.preset);
+    } catch (const Error& e) {
+      if (e.kind() != Error::Kind::Usage) throw;
+      throw Error(Error::Kind::Data,
+                  fmt::format("\"{}\": {}; choose one with beam run \"{}\" --preset NAME",
+                              (folder_ / kDocumentFile).string(), e.what(), folder_.string()));
+    }
     preset_loaded_ = document_.preset;
   }
   return preset_;
@@ -107,20 +116,31 @@ const std::map<std::string, FieldValue>& Project::preset() const {
 
 std::unique_ptr<Stage> Project::makeStage(std::string_view stage) const {
   std::unique_ptr<Stage> made = setup_->stages.make(stage);
-  const std::string prefix = std::string(stage) + ".";
-  for (const auto* values : {&preset(), &document_.settings}) {
-    for (const auto& [key, value] : *values) {
-      if (!key.starts_with(prefix)) continue;
-      FieldSetter setter(key.substr(prefix.size()), value);
-      made->parameters(setter);
-      if (!setter.found) {
-        throw Error(Error::Kind::Data, fmt::format("{} of \"{}\" names {}, which this program does not have",
-                                                   values == &document_.settings ? "a setting" : "the preset",
-                                                   folder_.string(), key));
-      }
-    }
-  }
+  for (const auto* values : {&preset(), &document_.settings}) setSaved(*made, stage, *values);
   return made;
+}
+
+void Project::setSaved(Stage& stage, std::string_view stage_id,
+                       const std::map<std::string, FieldValue>& from) const {
+  const bool own = &from == &document_.settings;
+  const auto refuse = [&](const std::string& key, const std::string& why) {
+    const std::string where = own ? fmt::format("\"{}\"", (folder_ / kDocumentFile).string())
+                                  : fmt::format("the preset {}", document_.preset);
+    const std::string advice =
+        own ? fmt::format("; beam run \"{}\" --unset {} takes it out", folder_.string(), key) : "";
+    throw Error(Error::Kind::Data, fmt::format("{}: {}{}", where, why, advice));
+  };
+  const std::string prefix = std::string(stage_id) + ".";
+  for (const auto& [key, value] : from) {
+    if (!key.starts_with(prefix)) continue;
+    FieldSetter setter(key.substr(prefix.size()), value);
+    try {
+      stage.parameters(setter);
+    } catch (const Error& e) {
+      refuse(key, prefix + e.what());
+    }
+    if (!setter.found) refuse(key, fmt::format("there is no setting {}", key));
+  }
 }
 
 std::vector<Field> Project::fields() const {
@@ -179,13 +199,8 @@ void Project::reset(std::string_view key) {
 }
 
 void Project::setPreset(const std::string& name) {
-  const std::string before = std::exchange(document_.preset, name);
-  try {
-    preset();
-  } catch (...) {
-    document_.preset = before;
-    throw;
-  }
+  if (!setup_->presets.empty()) loadPreset(setup_->presets, name);
+  document_.preset = name;
   memo_.clear();
   // What the new preset says anyway no longer differs.
   for (const auto& [key, value] : std::map(document_.settings)) set(key, value);
@@ -291,6 +306,7 @@ void Project::save() {
   document_.world = world();
   if (finds_placement_) document_.world_unknown = "{}";
   finds_placement_ = finds_placement_ && without_capture_;
+  requireSavable(folder_, document_);
   std::error_code failed;
   fs::create_directories(folder_, failed);
   if (failed) {
@@ -351,6 +367,12 @@ std::string Project::differenceOfCapture(const fs::path& folder) const {
   return differenceOf(document_.capture_files, found);
 }
 
+std::string Project::captureChange() const {
+  return document_.capture_files.empty() ? std::string() : differenceOfCapture(captureFolder());
+}
+
+void Project::acceptCaptureChange() { document_.capture_files = describeCapture(captureFolder()); }
+
 void Project::relocateCapture(const fs::path& folder, bool other_too) {
   const std::string other = differenceOfCapture(folder);
   if (!other_too && !other.empty()) {
@@ -379,7 +401,15 @@ const ImportedCapture& Project::imported() const {
     options.hold_out = document_.hold_out;
     options.unit_m = unit_m_;
     if (!finds_placement_) options.placement = document_.world.value_or(CapturePlacement{});
-    imported_ = std::make_shared<const ImportedCapture>(setup_->open_capture(captureFolder(), options));
+    try {
+      imported_ = std::make_shared<const ImportedCapture>(setup_->open_capture(captureFolder(), options));
+    } catch (const Error& e) {
+      if (e.kind() != Error::Kind::Usage || read_hold_out_ != document_.hold_out) throw;
+      throw Error(Error::Kind::Data,
+                  fmt::format("\"{}\" does not fit its capture: {}; say it anew with beam run \"{}\" "
+                              "--hold-out",
+                              (folder_ / kDocumentFile).string(), e.what(), folder_.string()));
+    }
   }
   return *imported_;
 }

@@ -108,6 +108,10 @@ class Project {
   // What tells the capture in `folder` from the one of this project, in words; empty: nothing does.
   // Throws Error{Data} when there is none.
   std::string differenceOfCapture(const std::filesystem::path& folder) const;
+  // The same of the capture where it is: its description was edited since, or another capture lies there.
+  std::string captureChange() const;
+  // What it says now is that of this project.
+  void acceptCaptureChange();
   // The capture is in `folder` now; ends looking without it. One that is described by other bytes, which may
   // not fit the results, is refused unless `other_too`: Error{Data} that tells what differs.
   void relocateCapture(const std::filesystem::path& folder, bool other_too = false);
@@ -168,6 +172,8 @@ class Project {
   Project(std::filesystem::path folder, ProjectDocument document, std::shared_ptr<const PipelineSetup> setup);
   void forgetCapture();
   const std::map<std::string, FieldValue>& preset() const;
+  // `from`: of preset() or of the document. Error{Data} that names where it stands for what cannot be.
+  void setSaved(Stage& stage, std::string_view stage_id, const std::map<std::string, FieldValue>& from) const;
   std::string lostCaptureText() const;
   bool savesTakes() const;
   Digest keyAt(const StepId& step, const Take& take, FrameIndex frame) const;
@@ -184,8 +190,9 @@ class Project {
   mutable std::shared_ptr<const InputDigests> inputs_;
   mutable KeyMemo memo_;
   bool without_capture_ = false, sketch_ = false;
-  bool finds_placement_ = false;  // of the capture, when it is read next
-  std::optional<double> unit_m_;  // that was given for it
+  std::optional<std::vector<std::string>> read_hold_out_;  // what project.json said; none: it was not read
+  bool finds_placement_ = false;                           // of the capture, when it is read next
+  std::optional<double> unit_m_;                           // that was given for it
 };
 
 }  // namespace beam

@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
 #include "core/base/json_words.h"
+#include "core/base/word_list.h"
 #include "core/io/file.h"
 #include "core/io/look_json.h"
 #include "core/pipeline/file_digest.h"
@@ -288,6 +289,19 @@ ProjectDocument parseProjectDocument(std::string_view json, std::string_view whe
       fmt::format("\"{}\" has project format {}.x, this program reads up to {}.x; open it with a newer "
                   "BEAM Studio",
                   where, major, kMajor));
+}
+
+void requireSavable(const fs::path& project, const ProjectDocument& document) {
+  std::vector<std::string> words = document.hold_out;
+  words.insert(words.end(), {document.capture.absolute, document.capture.relative});
+  if (document.environment) words.push_back(document.environment->absolute);
+  for (const std::string& word : words) {
+    if (isUtf8(word)) continue;
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" cannot be saved: the name \"{}\" is no UTF-8, which project.json is "
+                            "written in; rename that file or folder",
+                            project.string(), word));
+  }
 }
 
 bool isSaved(const fs::path& project, const ProjectDocument& document) {

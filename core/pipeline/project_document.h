@@ -74,6 +74,9 @@ bool isHistoryFile(const std::filesystem::path& file);
 // For the moment of a change of project.json. Throws Error{Locked} that names the holder when it stays taken.
 FileLock lockProject(const std::filesystem::path& project);
 
+// Throws Error{Usage} for a name of a file or camera that is no UTF-8: JSON would lose its bytes.
+void requireSavable(const std::filesystem::path& project, const ProjectDocument& document);
+
 // Whether project.json says what `document` says, takes apart.
 bool isSaved(const std::filesystem::path& project, const ProjectDocument& document);
 // Makes project.json of the folder say what `document` says, with a copy in history/, which keeps the last

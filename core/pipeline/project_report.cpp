@@ -213,10 +213,15 @@ std::string statusJson(const Project& project) {
   Reasons reasons(project);
   for (const StageInfo& info : project.setup().stages.infos()) {
     Json stage = {{"id", info.id}, {"title", info.title}};
-    if (const std::string why = project.blockedReason(info.id); !why.empty()) stage["blocked"] = why;
+    const std::string why = project.blockedReason(info.id);
+    if (!why.empty()) stage["blocked"] = why;
     stage["steps"] = Json::array();
-    for (const StepInfo& step : info.steps)
-      stage["steps"].push_back(stepJson(project, StepId(info.id, step.id), step, reasons));
+    for (const StepInfo& step : info.steps) {
+      const StepId id(info.id, step.id);
+      // What it would read is away: it has no key.
+      stage["steps"].push_back(why.empty() ? stepJson(project, id, step, reasons)
+                                           : Json{{"id", id.text()}, {"title", step.title}});
+    }
     j["stages"].push_back(std::move(stage));
   }
   return j.dump(2, ' ', false, Json::error_handler_t::replace);

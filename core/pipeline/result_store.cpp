@@ -58,11 +58,15 @@ std::optional<Digest> keyNamed(const std::string& name) {
 }
 
 // Ascending. Entries with other names are passed over.
-std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension) {
+enum class Kind { Folders, Files };
+
+std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension, Kind kind) {
   std::vector<Digest> found;
   std::error_code failed;
   for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
-    if (i->path().extension() != extension) continue;
+    // A folder where files are expected, or a file where folders are, is not ours.
+    std::error_code gone;
+    if (i->path().extension() != extension || i->is_directory(gone) != (kind == Kind::Folders)) continue;
     if (const std::optional<Digest> key = keyNamed(i->path().stem().string())) found.push_back(*key);
   }
   std::sort(found.begin(), found.end());
@@ -137,11 +141,13 @@ std::vector<ResultRecord> ResultStore::recordsByAge() const {
   return records;
 }
 
-std::vector<Digest> ResultStore::keys() const { return keysIn(project_ / "results", ""); }
+std::vector<Digest> ResultStore::keys() const { return keysIn(project_ / "results", "", Kind::Folders); }
 
-std::vector<Digest> ResultStore::leases() const { return keysIn(project_ / "leases", ""); }
+std::vector<Digest> ResultStore::leases() const { return keysIn(project_ / "leases", "", Kind::Files); }
 
-std::vector<Digest> ResultStore::failures() const { return keysIn(project_ / "failures", ".json"); }
+std::vector<Digest> ResultStore::failures() const {
+  return keysIn(project_ / "failures", ".json", Kind::Files);
+}
 
 fs::path ResultStore::halfBuiltFolderOf(const Digest& key) const {
   return project_ / "results" / fmt::format(".{}.{}.tmp", key.hex(), ::getpid());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/takes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <unordered_map>
 
@@ -13,6 +15,31 @@ Take normal(Take take) {
   if (take.count() == 1) take.step = 1;
   return take;
 }
+
+class TakeReader {
+ public:
+  explicit TakeReader(const std::vector<std::string>& frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) at_.emplace(frames[i], static_cast<std::int32_t>(i));
+  }
+
+  std::optional<Take> read(const SavedTake& take) const {
+    const auto first = at_.find(take.first), last = at_.find(take.last);
+    if (first == at_.end() || last == at_.end() || last->second < first->second || take.step < 1)
+      return std::nullopt;
+    const Take read = normal({{first->second}, {last->second}, take.step, take.lead});
+    return read.lead >= 0 && read.lead < read.count() ? std::optional(read) : std::nullopt;
+  }
+
+  std::string why(const SavedTake& take) const {
+    std::string reason = "its last frame comes before its first, or its step or lead cannot be";
+    for (const std::string& name : {take.last, take.first})
+      if (!at_.contains(name)) reason = fmt::format("the capture has no frame {}", name);
+    return fmt::format("the take {} to {} is left out: {}", take.first, take.last, reason);
+  }
+
+ private:
+  std::unordered_map<std::string, std::int32_t> at_;
+};
 
 // What `inner` claims `outer` does, too.
 bool covers(const Take& outer, const Take& inner) {
@@ -95,16 +122,20 @@ std::vector<FrameIndex> Take::frames() const {
 }
 
 std::vector<Take> readTakes(const std::vector<SavedTake>& saved, const std::vector<std::string>& frames) {
-  std::unordered_map<std::string, std::int32_t> at;
-  for (std::size_t i = 0; i < frames.size(); ++i) at.emplace(frames[i], static_cast<std::int32_t>(i));
+  const TakeReader reader(frames);
   std::vector<Take> takes;
-  for (const SavedTake& take : saved) {
-    const auto first = at.find(take.first), last = at.find(take.last);
-    if (first == at.end() || last == at.end() || last->second < first->second || take.step < 1) continue;
-    const Take read = normal({{first->second}, {last->second}, take.step, take.lead});
-    if (read.lead >= 0 && read.lead < read.count()) takes.push_back(read);
-  }
+  for (const SavedTake& take : saved)
+    if (const std::optional<Take> read = reader.read(take)) takes.push_back(*read);
   return takes;
+}
+
+std::vector<std::string> takesNotUnderstood(const std::vector<SavedTake>& saved,
+                                            const std::vector<std::string>& frames) {
+  const TakeReader reader(frames);
+  std::vector<std::string> words;
+  for (const SavedTake& take : saved)
+    if (!reader.read(take)) words.push_back(reader.why(take));
+  return words;
 }
 
 std::vector<SavedTake> saveTakes(const std::vector<Take>& takes, const std::vector<std::string>& frames) {

@@ -40,6 +40,9 @@ struct SavedTake {
 
 // `frames`: names of the capture. Takes of frames that it does not have are left out.
 std::vector<Take> readTakes(const std::vector<SavedTake>& saved, const std::vector<std::string>& frames);
+// In words, those that readTakes leaves out: "the take a to b is left out: the capture has no frame b".
+std::vector<std::string> takesNotUnderstood(const std::vector<SavedTake>& saved,
+                                            const std::vector<std::string>& frames);
 std::vector<SavedTake> saveTakes(const std::vector<Take>& takes, const std::vector<std::string>& frames);
 
 // The take that owns `frame`.

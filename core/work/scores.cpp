@@ -63,7 +63,7 @@ Scores meanOfCameras(const std::map<std::string, Scores>& cameras) {
 }
 
 std::string scoreJson(const ScoreTable& table, const std::vector<std::string>& setting_changes) {
-  return tableJson(table, setting_changes).dump(1);
+  return tableJson(table, setting_changes).dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string scoreJson(const ScoreTable& table, const PictureScores& each,
@@ -77,7 +77,7 @@ std::string scoreJson(const ScoreTable& table, const PictureScores& each,
     }
   }
   j["over_time"] = {{"frames", std::move(frames)}, {"worst", worstOf(each)}};
-  return j.dump(1);
+  return j.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace beam

@@ -72,6 +72,42 @@ class Clean : public ::testing::Test {
 };
 std::unique_ptr<TempDir> Clean::house_;
 
+TEST_F(Clean, WhatOfTheCaptureIsAwayCostsNothing) {
+  const fs::path capture = folder_.path() / "capture";
+  fs::copy(SampleHouse::capture(), capture, fs::copy_options::recursive);
+  const fs::path mine = folder_.path() / "mine.beam";
+  Words solve = {"process", capture.string(), "--out", mine.string(), "--until", "track"};
+  solve = solve + tinyTake() + Words{"--frames", "0-1"};
+  ASSERT_EQ(beam(solve).code, 0);
+  const auto before = filesIn(mine / "results");
+  std::string camera;
+  for (const auto& entry : fs::directory_iterator(capture / "images"))
+    if (entry.path().filename().string().starts_with("cam")) camera = entry.path().filename().string();
+  ASSERT_FALSE(camera.empty());
+  const auto expectRefused = [&](const fs::path& away, const std::string& named) {
+    fs::rename(capture / away, folder_.path() / "away");
+    const Said said = beam({"clean", mine.string()});
+    EXPECT_EQ(said.code, 65) << away << said.err;
+    EXPECT_THAT(said.err, AllOf(HasSubstr(named), HasSubstr("put it back")));
+    EXPECT_EQ(filesIn(mine / "results"), before);
+    fs::rename(folder_.path() / "away", capture / away);
+  };
+  expectRefused(fs::path("images") / camera / "000001.png", camera + "/000001.png");
+  expectRefused(fs::path("masks") / camera, camera + "/000000.png");
+  EXPECT_EQ(Json::parse(beam({"clean", mine.string(), "--json"}).out)["removed"]["count"], 0);
+  // Another capture in its place, with the same names.
+  fs::rename(capture, folder_.path() / "first");
+  ASSERT_EQ(beam({"sample", capture.string(), "--frames", "2", "--cameras", "6", "--size", "48x64",
+                  "--samples", "4"})
+                .code,
+            0);
+  const Said other = beam({"clean", mine.string()});
+  EXPECT_EQ(other.code, 65) << other.err;
+  EXPECT_THAT(other.err, HasSubstr("dataset.json"));
+  EXPECT_THAT(beam({"status", mine.string()}).err, HasSubstr("not described as it was"));
+  EXPECT_EQ(filesIn(mine / "results"), before);
+}
+
 TEST_F(Clean, RefusesToRemoveTheOnlyResultsThatThereAre) {
   ASSERT_EQ(beam({"run", only().string(), "--until", "capture", "--set", "surface.iterations=77"}).code, 0);
   const auto before = filesIn(only() / "results");

@@ -47,6 +47,71 @@ TEST_F(Settings, OfAProjectAreSeenWithTheirOriginAndOfNoneWithThePresets) {
   EXPECT_THAT(beam({"stages"}).out, HasSubstr("draft "));
 }
 
+TEST_F(Settings, ThatCannotBeAreNamedWithTheirFileAndCanBeMended) {
+  const fs::path file = fs::path(project()) / "project.json";
+  const auto write = [&](auto&& change) {
+    Json document = Json::parse(textOf(file));
+    change(document);
+    std::ofstream(file) << document.dump();
+  };
+  const auto expectNamed = [&](const char* what, const Words& mend) {
+    for (const char* command : {"status", "run", "render"}) {
+      const Words out = command == std::string("render") ? Words{"--out", at("out")} : Words{};
+      const Said said = beam(Words{command, project()} + out);
+      EXPECT_EQ(said.code, 65) << command << said.err;
+      EXPECT_THAT(said.err, AllOf(HasSubstr("project.json"), HasSubstr(what), HasSubstr(mend[0])));
+    }
+    const Said mended = beam(Words{"run", project(), "--until", "capture"} + mend);
+    EXPECT_EQ(mended.code, 0) << mended.err;
+    EXPECT_EQ(beam({"status", project()}).code, 0);
+  };
+  write([](Json& j) { j["preset"] = "nope"; });
+  expectNamed("nope", {"--preset", "draft"});
+  write([](Json& j) { j["settings"]["surface.iterations"] = -5; });
+  expectNamed("surface.iterations", {"--unset", "surface.iterations"});
+  write([](Json& j) { j["settings"]["surface.nobody"] = 1; });
+  expectNamed("surface.nobody", {"--unset", "surface.nobody"});
+  write([](Json& j) { j["hold_out"] = {"nobody"}; });
+  expectNamed("nobody", {"--hold-out", "none"});
+}
+
+TEST_F(Settings, ThatARunSavesAreSaid) {
+  const Words run = {"run", project(), "--until", "capture", "--set", "surface.cap=500"};
+  EXPECT_THAT(beam(run + Words{"--dry-run"}).err, HasSubstr("would be saved: surface.cap 400 → 500"));
+  EXPECT_THAT(beam(run).err, HasSubstr("saved: surface.cap 400 → 500"));
+  EXPECT_THAT(beam(run).err, Not(HasSubstr("saved:")));
+}
+
+TEST_F(Settings, TakesOfFramesThatAreNotThereAreSaid) {
+  const fs::path file = fs::path(project()) / "project.json";
+  Json document = Json::parse(textOf(file));
+  document["takes"].push_back({{"first", "000000"}, {"last", "999999"}, {"step", 1}});
+  std::ofstream(file) << document.dump();
+  const Said said = beam({"status", project()});
+  EXPECT_EQ(said.code, 0);
+  EXPECT_THAT(said.err, HasSubstr("the capture has no frame 999999"));
+}
+
+TEST_F(Settings, APlaceThatIsNamedInOtherBytesThanUtf8IsNotSaved) {
+  const std::string odd = at("caf\xe9");
+  fs::copy(SampleHouse::capture(), odd, fs::copy_options::recursive);
+  const Said said = beam({"new", at("n.beam"), "--capture", odd});
+  EXPECT_EQ(said.code, 2) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("UTF-8"));
+  EXPECT_FALSE(fs::exists(at("n.beam")));
+  EXPECT_NO_THROW(Json::parse(beam({"check", odd, "--json"}).out));
+}
+
+TEST_F(Settings, OfAPanoramaThatIsAwayTheStatusIsToldAsJsonToo) {
+  fs::copy(SampleHouse::capture() / "environment.exr", at("light.exr"));
+  ASSERT_EQ(beam({"run", project(), "--until", "capture", "--environment", at("light.exr")}).code, 0);
+  fs::remove(at("light.exr"));
+  const Said words = beam({"status", project()}), json = beam({"status", project(), "--json"});
+  EXPECT_EQ(words.code, 0) << words.err;
+  EXPECT_EQ(json.code, 0) << json.err;
+  EXPECT_THAT(json.out, HasSubstr("\"blocked\""));
+}
+
 TEST_F(Settings, AreTakenBackOneByOneAndAllAtOnce) {
   EXPECT_EQ(beam({"run", project(), "--until", "capture", "--unset", "surface.iterations"}).code, 0);
   EXPECT_THAT(originOf("surface.iterations"), HasSubstr("preset standard"));

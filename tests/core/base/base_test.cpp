@@ -15,6 +15,7 @@
 #include "core/base/parallel.h"
 #include "core/base/progress.h"
 #include "core/base/rng.h"
+#include "core/base/word_list.h"
 
 namespace beam {
 namespace {
@@ -31,6 +32,14 @@ void describe(Fields& f, Options& o) {
           [&] { f.field({.name = "weight", .label = "Weight", .help = "", .min = 0, .max = 1}, o.weight); });
   f.field({.name = "on", .label = "On", .help = ""}, o.on);
   f.field({.name = "kind", .label = "Kind", .help = "", .choices = {"a", "b"}}, o.kind);
+}
+
+TEST(WordList, Utf8IsToldFromOtherBytes) {
+  for (const char* whole : {"", "plain", "caf\u00e9", "\u20ac", "\U0001f600", "\uffff", "\U0010ffff"})
+    EXPECT_TRUE(isUtf8(whole)) << whole;
+  for (const char* other : {"caf\xe9", "\xc3", "\x80", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80",
+                            "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\xe2\x82", "\xe2\x82g"})
+    EXPECT_FALSE(isUtf8(other)) << other;
 }
 
 bool set(Options& o, const std::string& name, const std::string& text) {

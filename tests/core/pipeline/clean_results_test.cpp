@@ -212,6 +212,39 @@ TEST_F(Clean, ACaptureThatIsGoneCostsNothing) {
   EXPECT_EQ(everythingIn(folder()), before);
 }
 
+TEST_F(Clean, AFolderThatIsNamedLikeALeaseStopsNothing) {
+  solveToAndFro();
+  const fs::path odd = folder() / "leases" / std::string(32, 'a') / "b";
+  fs::create_directories(odd);
+  EXPECT_EQ(clean().use.others().count, 3 * 4);
+  EXPECT_TRUE(fs::exists(odd)) << "nobody's to remove";
+}
+
+TEST_F(Clean, SaysWhichCamerasAreGone) {
+  solveToAndFro();
+  EXPECT_THAT(plan().gone, IsEmpty()) << "of other settings alone";
+  const auto open = house_.setup->open_capture;
+  house_.setup->open_capture = [&](const auto& folder, const auto& options) {
+    ImportedCapture imported = open(folder, options);
+    imported.set.views.pop_back();
+    return imported;
+  };
+  std::ofstream(house_.root() / "capture/dataset.json") << "{ }";
+  EXPECT_THAT(plan().gone, ::testing::Contains(HasSubstr("dataset.json")));
+  EXPECT_THAT(plan().gone, ::testing::Contains("the picture top")) << "a capture without files";
+}
+
+TEST_F(Clean, ATakeOfAFrameThatIsNotThereCostsNothing) {
+  solveToAndFro();
+  house_.frame_names.pop_back();
+  Project p = house_.open();
+  ProjectDocument document = p.document();
+  document.takes = {{"000", "nowhere", 1, 0}};
+  std::ofstream(folder() / "project.json") << toJson(document);
+  EXPECT_EQ(refusalOf(), Error::Kind::Data);
+  EXPECT_THAT(said_, HasSubstr("no frame nowhere"));
+}
+
 TEST_F(Clean, APictureThatCannotBeReadCostsNothing) {
   class OddFrames final : public FrameSource {
    public:
