@@ -33,15 +33,6 @@ std::string head(std::initializer_list<const char*> titles) {
   return row + "</tr></thead>\n";
 }
 
-// "000001, 000002 and 5 more".
-std::string namesText(const std::vector<std::string>& names) {
-  const std::vector<std::string> shown(
-      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(kListed, names.size())));
-  std::string text = fmt::format("{}", fmt::join(shown, ", "));
-  if (names.size() > shown.size()) text += fmt::format(" and {} more", names.size() - shown.size());
-  return text;
-}
-
 // What a camera was like over the frames.
 struct CameraRow {
   bool held_out = false;
@@ -141,7 +132,7 @@ class PageWriter {
         const bool known = d.psnr_with > 0 || d.psnr_without > 0;
         out_ +=
             "<tr>" + cell(d.camera, "name") + cell(fmt::format("{} {}.", d.camera, d.text)) +
-            cell(namesText(d.frames)) +
+            cell(namesText(d.frames, kListed)) +
             (known ? number(d.psnr_with, 2) + number(d.psnr_without, 2) : cell("-", "n") + cell("-", "n")) +
             "</tr>\n";
       }
