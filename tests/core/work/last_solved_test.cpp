@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 constexpr const char* kChange = "surface.iterations 100 → 300";
 
@@ -92,6 +93,25 @@ TEST_F(LastSolvedTest, TakesAllFramesFromTheSameSettings) {
   EXPECT_THAT(lastSolved(now, {.frames = "1"}, progress_).changes, IsEmpty());
   EXPECT_THAT(lastSolved(now, {.frames = "all"}, progress_).changes, IsEmpty()) << "some are solved";
   EXPECT_THAT(lastSolved(now, {.frames = "0-1"}, progress_).changes, ElementsAre(kChange));
+}
+
+TEST_F(LastSolvedTest, NamesInOneWarningTheFramesThatOtherSettingsAloneHave) {
+  run(changed(), {.frames = {FrameIndex{0}}});
+  const Project now = Project::open(folder_ / "capture.beam", standInPipeline({.frames = 3}));
+  const LastSolved last = lastSolved(now, {}, progress_);
+  EXPECT_THAT(last.left_out, ElementsAre(FrameIndex{1}, FrameIndex{2}));
+  last.tell();
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_THAT(warnings_[0], HasSubstr("frames 000001-000002 are left out"));
+  EXPECT_THAT(lastSolved(now, {.strict = true}, progress_).left_out, SizeIs(2)) << "strict refuses no more";
+  EXPECT_THAT(lastSolved(now, {.frames = "0"}, progress_).left_out, IsEmpty()) << "not asked for";
+}
+
+TEST_F(LastSolvedTest, LeavesOutNoFrameThatNobodySolvedOrAScoutPassed) {
+  const Project part = solvedStandIn(folder_.path(), {.frames = 3}, {.frames = {FrameIndex{0}}});
+  EXPECT_THAT(lastSolved(part, {}, progress_).left_out, IsEmpty());
+  const Project scouted = solvedStandIn(folder_ / "scout", {.frames = 3}, {.every = 2});
+  EXPECT_THAT(lastSolved(scouted, {.between = true}, progress_).left_out, IsEmpty());
 }
 
 TEST_F(LastSolvedTest, TakesMaterialsOfOtherSettingsOnTheSurfaceInForce) {
