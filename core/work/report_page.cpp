@@ -324,8 +324,12 @@ class PageWriter {
   }
 
   void evaluation() {
+    if (page_.evaluation.empty() && page_.evaluation_note.empty()) return;
+    section("Last evaluation",
+            page_.evaluation.empty() ? "" : "As beam evaluate wrote it, means over pictures.");
+    if (!page_.evaluation_note.empty())
+      out_ += fmt::format("<p class=\"warn\">Attention: {}.</p>\n", escapedHtml(page_.evaluation_note));
     if (page_.evaluation.empty()) return;
-    section("Last evaluation", "As beam evaluate wrote it, means over pictures.");
     static constexpr std::pair<const char*, int> kColumns[] = {
         {"psnr", 2}, {"ssim", 4}, {"psnr_mask", 2}, {"pictures", 0}};
     out_ += "<table>" + head({"Map", "PSNR, dB", "SSIM", "PSNR in mask, dB", "Pictures", "Other figures"}) +
@@ -361,7 +365,8 @@ class PageWriter {
     }
     if (places.empty()) return;
     section("Energies, flicker and other figures over time",
-            "Evaluation: as beam evaluate last found it; the others: from the records of the steps.");
+            "Evaluation: as beam evaluate last found it, of frames that were not solved anew since; the "
+            "others: from the records of the steps.");
     for (const std::string& place : places) {
       if (!place.empty()) out_ += fmt::format("<h3>{}</h3>\n", escapedHtml(place));
       out_ += fmt::format("<div class=\"charts small\">{}</div>\n", charts[place]);

@@ -149,7 +149,8 @@ TEST_F(LastSolvedTest, ServesPicturesExportsScoresAndTheReportWhichIsMarked) {
                                      .out = folder_ / "pictures"};
   EXPECT_EQ(renderFrames(pictures, *newCpuSceneRenderer(*device_), progress_).frames, 3u);
   EXPECT_EQ(exportFrames({project, "all", false, folder_ / "splats"}, progress_).files.size(), 3u);
-  EXPECT_THAT(evaluate({project, "all", {}, {}}, *device_, progress_).setting_changes, ElementsAre(kChange));
+  EXPECT_THAT(evaluate({project, "all", {}, {}}, *device_, progress_).origin.setting_changes,
+              ElementsAre(kChange));
   EXPECT_EQ(report({project, folder_ / "page.html"}, *device_, progress_).frames, 3u);
   EXPECT_THAT(readTextFile(folder_ / "page.html"), HasSubstr(kChange));
   const auto names_it = [](const std::string& warning) { return warning.find(kChange) != std::string::npos; };
