@@ -52,6 +52,16 @@ std::vector<std::string> channelsIn(const std::string& list) {
   return once;
 }
 
+// A panorama that nothing is lit by was meant for something: said before the work.
+void requireUse(const std::string& environment, const std::vector<std::string>& channels) {
+  if (environment.empty() || std::find(channels.begin(), channels.end(), kRelightChannel) != channels.end())
+    return;
+  throw Error(Error::Kind::Usage,
+              fmt::format("--environment lights the channel {0} alone, and --channels are {1}: add {0} to "
+                          "them, or leave --environment out",
+                          kRelightChannel, fmt::join(channels, ", ")));
+}
+
 std::string writtenText(const RenderFramesOutcome& outcome, const RenderFlags& flags) {
   if (outcome.kept > 0 && outcome.written == 0)
     return fmt::format("nothing to draw: {} in \"{}\", as this command writes them",
@@ -75,6 +85,7 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
                               .out = flags.out,
                               .force = flags.force,
                               .strict = flags.strict};
+  requireUse(flags.environment, request.channels);
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
   context.interrupted = flags.skip_existing ? "interrupted; the same command goes on"
                                             : "interrupted; the same command with --skip-existing goes on";
@@ -130,7 +141,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--frames", flags->frames, kSolvedFramesHelp)->type_name("LIST");
   command
       ->add_option("--environment", flags->environment,
-                   "Panorama (.exr, .hdr) for the channel relight; see beam help environment")
+                   "Panorama (.exr, .hdr) for the channel relight, which --channels must name; see "
+                   "beam help environment")
       ->type_name("FILE");
   command
       ->add_option(

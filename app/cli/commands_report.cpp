@@ -26,8 +26,11 @@ int runReport(const ReportFlags& flags, CommandContext& context) {
   const ReportOutcome outcome = report(request, *device, progress);
   context.console.endProgress();
   for (const std::string& finding : outcome.findings) context.console.warning(finding);
-  context.console.print(
-      fmt::format("wrote the report of {} to \"{}\"", countText(outcome.frames, "frame"), flags.out));
+  const std::string of =
+      outcome.solved == outcome.frames
+          ? countText(outcome.frames, "frame")
+          : fmt::format("{}, {} solved", countText(outcome.frames, "frame"), outcome.solved);
+  context.console.print(fmt::format("wrote the report of {} to \"{}\"", of, flags.out));
   return 0;
 }
 

@@ -91,6 +91,9 @@ std::string filesText() {
   page.heading("A project, Name.beam");
   page.row("project.json", "the capture's place, the settings that differ from the preset, looks");
   page.row("history/", "the last versions of project.json");
+  page.row("evaluation*.json",
+           "scores of the last beam evaluate, for beam report and the window; evaluation_frames.json also "
+           "frame by frame");
   page.row("results/",
            "one folder a result: plain PLY, EXR, PNG and JSON that other programs open, and "
            "result.json, which says what it was made of");

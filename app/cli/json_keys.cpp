@@ -116,6 +116,7 @@ JsonAnswer checkKeys() {
 JsonAnswer evaluateKeys() {
   return {"evaluate",
           {{"setting_changes[]", "where the frames are of other settings: from theirs to those in force"},
+           {"results.*", "which result of a frame was scored; another where it was solved anew since"},
            {"*.*",
             "scores by what is scored and by name: psnr and psnr_mask in dB, ssim, angle_deg, "
             "mae_mm, chamfer_mm; `pictures` is their number"},

@@ -2,6 +2,7 @@
 #include "core/base/count_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace beam {
 namespace {
@@ -23,6 +24,12 @@ std::string nounText(std::int64_t n, std::string_view one, std::string_view many
 
 std::string countText(std::int64_t n, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", grouped(n), nounText(n, one, many));
+}
+
+std::string namesText(const std::vector<std::string>& names, std::size_t most) {
+  if (names.size() <= most) return fmt::format("{}", fmt::join(names, ", "));
+  const std::vector<std::string> named(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(most));
+  return fmt::format("{} and {} more", fmt::join(named, ", "), names.size() - most);
 }
 
 }  // namespace beam

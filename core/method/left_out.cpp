@@ -2,26 +2,18 @@
 #include "core/method/left_out.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include "core/base/count_text.h"
+#include "core/scene/frame_list.h"
 
 namespace beam {
 namespace {
-
-// "000003-000007, 000009".
-std::string rangesText(const std::vector<std::string>& names, const std::vector<int>& indices) {
-  std::string text;
-  for (std::size_t begin = 0, end = 1; begin < names.size(); begin = end, ++end) {
-    while (end < names.size() && indices[end] == indices[end - 1] + 1) ++end;
-    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", names[begin],
-                        end - begin > 1 ? "-" + names[end - 1] : std::string());
-  }
-  return text;
-}
 
 void add(const ScoredFrame& frame, FitQuality& q) {
   const SplitScore fitted = meanOf(frame.views, false), held_out = meanOf(frame.views, true);
@@ -68,7 +60,7 @@ std::string toText(const LeftOutCamera& c, std::span<const Defect> defects) {
     why += fmt::format("; it {}", d.text.substr(0, d.text.find(':')));
   }
   return fmt::format("camera {} in {} {}: {}", c.camera, nounText(c.frames.size(), "frame"),
-                     rangesText(c.frames, c.indices), why);
+                     fmt::join(frameRanges(c.frames, c.indices), ", "), why);
 }
 
 LeftOutLoss lossOf(std::span<const ScoredFrame> frames) {
@@ -99,8 +91,9 @@ std::string toText(const LeftOutLoss& loss) {
   text += fmt::format("; {} with every camera: {}", countText(loss.complete.frames, "frame"),
                       figures(loss.complete));
   if (loss.incomplete.held_out_frames > 0 && loss.complete.held_out_frames > 0) {
-    text += fmt::format(". The loss shows in the held-out views: {:+.2f} dB",
-                        loss.incomplete.held_out - loss.complete.held_out);
+    const double gain = std::round(100 * (loss.incomplete.held_out - loss.complete.held_out)) / 100;
+    text += gain < 0 ? fmt::format(". The loss shows in the held-out views: {:+.2f} dB", gain)
+                     : fmt::format(". The held-out views show no loss: {:+.2f} dB", std::abs(gain));
   } else {
     text += ". Without held-out cameras (--hold-out) the loss where no camera looks is not known";
   }

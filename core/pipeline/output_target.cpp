@@ -90,6 +90,10 @@ void requireOutside(const fs::path& place) {
 
 void requireFileTarget(const fs::path& file, const OutputRule& rule) {
   requireOutside(file);
+  if (const fs::path name = file.filename(); name.empty() || name == "." || name == "..") {
+    throw Error(Error::Kind::Usage,
+                fmt::format("\"{}\" names a folder; expected the name of a file in it", file.string()));
+  }
   requireOwn(file, rule);
   requireFolder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }

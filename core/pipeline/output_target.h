@@ -19,7 +19,8 @@ struct OutputRule {
 void requireOutside(const std::filesystem::path& place);
 
 // For a file that will be written. Makes its folder. Throws Error{Usage}: inside a capture or a project, no
-// regular file, or one that another wrote; Error{Storage}: the folder cannot be made or written into.
+// name of a file ("out/"), no regular file, or one that another wrote; Error{Storage}: the folder cannot be
+// made or written into.
 void requireFileTarget(const std::filesystem::path& file, const OutputRule& rule);
 
 // For a folder that `files`, named in it, will be written into. Makes it and looks at each of the files as

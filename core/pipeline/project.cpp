@@ -328,9 +328,11 @@ void Project::save() {
 
 fs::path Project::captureFolder() const {
   if (std::optional<fs::path> found = resolve(document_.capture, folder_)) return *found;
-  throw Error(Error::Kind::Data,
-              fmt::format("{}; put it back, or name its new place with: beam process FOLDER --out \"{}\"",
-                          lostCaptureText(), folder_.string()));
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("{}; its results are kept, and which of them are in force hangs on the capture: put it "
+                  "back, or name its new place with: beam process FOLDER --out \"{}\" --until capture",
+                  lostCaptureText(), folder_.string()));
 }
 
 std::string Project::lostCaptureText() const {

@@ -98,4 +98,14 @@ std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<
   return {chosen.begin(), chosen.end()};
 }
 
+std::vector<std::string> frameRanges(const std::vector<std::string>& names,
+                                     const std::vector<int>& positions) {
+  std::vector<std::string> ranges;
+  for (std::size_t begin = 0, end = 1; begin < names.size(); begin = end, ++end) {
+    while (end < names.size() && positions[end] == positions[end - 1] + 1) ++end;
+    ranges.push_back(end - begin > 1 ? fmt::format("{}-{}", names[begin], names[end - 1]) : names[begin]);
+  }
+  return ranges;
+}
+
 }  // namespace beam

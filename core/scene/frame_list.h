@@ -18,4 +18,8 @@ bool isAllFrames(std::string_view list);
 // Throws Error{Usage} for words it does not understand and for numbers that the capture does not have.
 std::vector<FrameIndex> parseFrameList(std::string_view list, const std::vector<std::string>& frames);
 
+// The other way: "000003-000007" and "000009" of frames in order, by name and by position in the capture.
+std::vector<std::string> frameRanges(const std::vector<std::string>& names,
+                                     const std::vector<int>& positions);
+
 }  // namespace beam

@@ -318,18 +318,38 @@ class ChannelWriter {
   RenderedFiles done_;
 };
 
-void check(const RenderRequest& request, const RendererAbilities& abilities) {
+void requirePanoramas(const RenderRequest& request) {
+  const bool relit = std::any_of(request.channels.begin(), request.channels.end(), [](const std::string& id) {
+    return channelOf(id).needs == ChannelNeeds::MaterialsAndLight;
+  });
+  if (relit && request.environments.empty()) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("the channel {} needs a panorama: give --environment FILE", kRelightChannel));
+  }
+  if (!relit) return;
+  std::map<std::string, fs::path> named;
+  for (const fs::path& file : request.environments) {
+    const auto [other, fresh] = named.try_emplace(relitName(file), file);
+    if (fresh) continue;
+    throw Error(
+        Error::Kind::Usage,
+        fmt::format("the panoramas \"{}\" and \"{}\" would both be written as {}: expected other names; "
+                    "rename one, or relight with one after the other into folders of their own",
+                    other->second.string(), file.string(), other->first));
+  }
+}
+
+}  // namespace
+
+void requireDrawable(const RenderRequest& request, const RendererAbilities& abilities) {
   for (const std::string& id : request.channels) {
     const ChannelInfo& channel = channelOf(id);
     if (id != kMeshChannel && !draws(abilities, channel)) {
       throw Error(Error::Kind::Usage, fmt::format("the renderer {} does not draw {}: it draws {}",
                                                   abilities.id, id, fmt::join(abilities.channels, ", ")));
     }
-    if (channel.needs == ChannelNeeds::MaterialsAndLight && request.environments.empty()) {
-      throw Error(Error::Kind::Usage,
-                  fmt::format("the channel {} needs a panorama: give --environment FILE", id));
-    }
   }
+  requirePanoramas(request);
   if (abilities.needs_context)
     throw Error(Error::Kind::Bug, "render channels: a renderer that draws textures");
   if (!request.layers) return;
@@ -339,8 +359,6 @@ void check(const RenderRequest& request, const RendererAbilities& abilities) {
       requireLayers(request.out / kLayersFolder / view.name, layers, view.camera.width, view.camera.height);
   }
 }
-
-}  // namespace
 
 std::vector<fs::path> channelFiles(const GaussianSequence& sequence, const RenderRequest& request) {
   std::vector<fs::path> files;
@@ -360,7 +378,7 @@ std::vector<fs::path> channelFiles(const GaussianSequence& sequence, const Rende
 
 RenderedFiles renderChannels(const GaussianSequence& sequence, const RenderRequest& request,
                              SceneRenderer& renderer, Progress& progress) {
-  check(request, renderer.abilities());
+  requireDrawable(request, renderer.abilities());
   progress.expect(static_cast<std::int64_t>(request.frames.size() * request.views.size()));
   ChannelWriter writer(sequence, request, renderer);
   for (const FrameIndex f : request.frames) writer.frame(f, progress);

@@ -39,9 +39,13 @@ struct RenderedFiles {
   std::size_t written = 0, kept = 0;  // kept: skip_existing found them
 };
 
-// Throws Error{Usage} for an unknown channel, one that the renderer does not draw, relight without a panorama
-// or two layers of one name; Error{Data} when a frame is not solved as far as a channel needs, or layers are
-// more than a file is read with. The renderer draws no textures.
+// Throws Error{Usage} for an unknown channel, one that the renderer does not draw, relight without a
+// panorama, two of one name or two layers of one name; Error{Data} for layers
+// that are more than a file is read with. Writes nothing.
+void requireDrawable(const RenderRequest& request, const RendererAbilities& abilities);
+
+// Throws what requireDrawable does, and Error{Data} when a frame is not solved as far as a channel needs. The
+// renderer draws no textures.
 RenderedFiles renderChannels(const GaussianSequence& sequence, const RenderRequest& request,
                              SceneRenderer& renderer, Progress& progress);
 

@@ -9,14 +9,18 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/io/file.h"
 #include "core/method/score_views.h"
 #include "core/render/cpu_scene_renderer.h"
+#include "core/scene/frame_list.h"
 #include "core/scene/frame_views.h"
+#include "core/stages/picture_files.h"
 #include "core/stages/project_sequence.h"
 #include "core/stages/render_channels.h"
 #include "core/work/evaluate_over_time.h"
 #include "core/work/ground_truth.h"
+#include "core/work/kept_evaluation.h"
 #include "core/work/last_solved.h"
 #include "core/work/selection.h"
 
@@ -45,20 +49,27 @@ class ScratchFolder {
   fs::path path_;
 };
 
+std::vector<View> testViews(const Project& project, const GroundTruth& truth) {
+  std::vector<View> views;
+  for (const View& view : project.capture().views) {
+    const auto& tests = truth.test_cameras;
+    if (std::find(tests.begin(), tests.end(), view.name) != tests.end()) views.push_back(view);
+  }
+  if (views.empty()) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" has none of the test cameras of \"{}\"",
+                                               project.folder().string(), truth.folder.string()));
+  }
+  return views;
+}
+
 // Channels the solved frames can give and the truth can judge.
-RenderRequest picturesFor(const EvaluateRequest& request, const GaussianSequence& sequence,
-                          const GroundTruth& truth, const fs::path& out, const Progress& progress) {
+RenderRequest picturesFor(const GaussianSequence& sequence, const GroundTruth& truth,
+                          std::vector<FrameIndex> frames, std::vector<View> views, const fs::path& out,
+                          const Progress& progress) {
   RenderRequest r;
   r.out = out;
-  r.frames = selectSolvedFrames(request.frames, sequence, progress);
-  for (const View& view : request.project.capture().views) {
-    const auto& tests = truth.test_cameras;
-    if (std::find(tests.begin(), tests.end(), view.name) != tests.end()) r.views.push_back(view);
-  }
-  if (r.views.empty()) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\" has none of the test cameras of \"{}\"", sequence.id(),
-                                               truth.folder.string()));
-  }
+  r.frames = std::move(frames);
+  r.views = std::move(views);
   bool materials = true, meshes = true;
   for (const FrameIndex f : r.frames) {
     progress.check();
@@ -76,17 +87,47 @@ RenderRequest picturesFor(const EvaluateRequest& request, const GaussianSequence
   return r;
 }
 
-EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, GroundTruth truth, ComputeDevice& device,
-                                  Progress& progress) {
+// `render --layers` wrote one file a camera and frame, which no other program's evaluator reads either.
+void requireNoLayers(const GroundTruth& truth, const fs::path& pictures) {
+  if (!fs::is_directory(pictures / kLayersFolder)) return;
+  const std::string found =
+      fmt::format("\"{}\" holds channels as layers of one EXR file ({}/), which evaluate does not read",
+                  pictures.string(), kLayersFolder);
+  constexpr const char* kAdvice = "to score them, write a folder a channel with beam render without --layers";
+  if (!hasPictures(truth, pictures)) throw Error(Error::Kind::Data, fmt::format("{}; {}", found, kAdvice));
+  logWarning("{}: they are left out; {}", found, kAdvice);
+}
+
+EvaluateOutcome scoreForeignPictures(const EvaluateRequest& request, GroundTruth truth, Progress& progress) {
   align(truth, request.project.capture());
-  EvaluateOutcome e;
-  if (!request.pictures.empty()) {
-    e.table = scorePictures(truth, request.pictures, progress, e.each);
-    return e;
+  if (!isAllFrames(request.frames)) {
+    const CaptureSet& capture = request.project.capture();
+    std::vector<std::string> names;
+    for (const FrameIndex f : parseFrameList(request.frames, capture.frames))
+      names.push_back(capture.frames[static_cast<std::size_t>(f.value)]);
+    keepFrames(truth, names);
   }
+  requireNoLayers(truth, request.pictures);
+  EvaluateOutcome e;
+  e.table = scorePictures(truth, request.pictures, progress, e.each);
+  return e;
+}
+
+EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, const LastSolved& last, GroundTruth truth,
+                                  ComputeDevice& device, Progress& progress) {
+  align(truth, last.project.capture());
+  const auto sequence = sequenceOf(last.project, Shows::Solved);
+  std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
+  std::vector<std::string> names;
+  for (const FrameIndex f : frames) names.push_back(nameOf(*sequence, f));
+  keepFrames(truth, names);
+  std::vector<View> views = testViews(last.project, truth);
+  requireFits(truth, views);
+  last.tell();
   const ScratchFolder scratch;
-  const auto sequence = sequenceOf(request.project, Shows::Solved);
-  const RenderRequest pictures = picturesFor(request, *sequence, truth, scratch.path(), progress);
+  const RenderRequest pictures =
+      picturesFor(*sequence, truth, std::move(frames), std::move(views), scratch.path(), progress);
+  EvaluateOutcome e;
   {
     Progress part = progress.part(0.5, "render");
     renderChannels(*sequence, pictures, *newCpuSceneRenderer(device), part);
@@ -97,6 +138,7 @@ EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, GroundTruth tr
   }
   Progress part = progress.part(0.2, "compare frames");
   scoreMotion(*sequence, pictures.views, pictures.frames, &truth, device, part, e.each);
+  e.origin.results = resultsOf(*sequence, pictures.frames);
   return e;
 }
 
@@ -111,10 +153,12 @@ void addMean(const std::string& row, const std::vector<PictureScore>& scores, Sc
 }
 
 // Held-out photographs at their full size, whichever cameras have one of the frame.
-EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, ComputeDevice& device, Progress& progress) {
-  const CaptureSet& capture = request.project.capture();
-  const auto sequence = sequenceOf(request.project, Shows::Solved);
+EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, const LastSolved& last, ComputeDevice& device,
+                             Progress& progress) {
+  const CaptureSet& capture = last.project.capture();
+  const auto sequence = sequenceOf(last.project, Shows::Solved);
   const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
+  last.tell();
   EvaluateOutcome e;
   std::vector<PictureScore> all;
   for (const FrameIndex frame : frames) {
@@ -137,6 +181,7 @@ EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, ComputeDevice& devi
   addMean("rgb_held_out", all, e.table);
   Progress part = progress.part(0.2, "compare frames");
   scoreMotion(*sequence, {}, frames, nullptr, device, part, e.each);
+  e.origin.results = resultsOf(*sequence, frames);
   return e;
 }
 
@@ -156,28 +201,26 @@ EvaluateOutcome evaluate(const EvaluateRequest& request, ComputeDevice& device, 
   // Opened first: what cannot be scored is refused before anything is told.
   std::optional<GroundTruth> truth;
   if (!request.ground_truth.empty()) truth = openGroundTruth(request.ground_truth);
-  EvaluateRequest solved = request;
-  std::vector<std::string> changes;
-  if (request.pictures.empty()) {
-    const WantedResults wanted{.frames = request.frames, .materials_if_any = true, .strict = request.strict};
-    LastSolved last = lastSolved(request.project, wanted, progress);
-    last.tell();
-    solved.project = std::move(last.project);
-    changes = std::move(last.changes);
+  if (!truth && !request.pictures.empty()) {
+    throw Error(Error::Kind::Usage,
+                "--pictures needs the data set that they are scored against: give --ground-truth FOLDER");
   }
-  EvaluateOutcome outcome = truth ? scoreAgainstTruth(solved, std::move(*truth), device, progress)
-                                  : scoreHeldOut(solved, device, progress);
+  if (!request.pictures.empty()) return scoreForeignPictures(request, std::move(*truth), progress);
+  const LastSolved last =
+      lastSolved(request.project,
+                 {.frames = request.frames, .materials_if_any = true, .strict = request.strict}, progress);
+  EvaluateOutcome outcome = truth ? scoreAgainstTruth(request, last, std::move(*truth), device, progress)
+                                  : scoreHeldOut(request, last, device, progress);
   for (auto& row : motionTable(outcome.each)) outcome.table.push_back(std::move(row));
-  outcome.setting_changes = std::move(changes);
+  outcome.origin.setting_changes = last.changes;
   return outcome;
 }
 
 void keepEvaluation(const Project& project, const EvaluateOutcome& outcome) {
-  if (project.readOnly()) return;
-  writeFileAtomically(project.folder() / kEvaluationFile,
-                      scoreJson(outcome.table, outcome.setting_changes) + "\n");
+  if (outcome.origin.results.empty() || project.readOnly()) return;
+  writeFileAtomically(project.folder() / kEvaluationFile, scoreJson(outcome.table, outcome.origin) + "\n");
   writeFileAtomically(project.folder() / kEvaluationFramesFile,
-                      scoreJson(outcome.table, outcome.each, outcome.setting_changes) + "\n");
+                      scoreJson(outcome.table, outcome.each, outcome.origin) + "\n");
 }
 
 }  // namespace beam

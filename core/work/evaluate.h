@@ -22,7 +22,8 @@ struct EvaluateRequest {
   std::string frames = "all";  // of selectSolvedFrames
   // Folder of a data set with dataset.json and gt/; empty: photographs of held-out cameras, at full size.
   std::filesystem::path ground_truth;
-  // Folder of renderChannels whose pictures are scored against the ground truth; empty: new ones are drawn.
+  // Folder of renderChannels whose pictures, of `frames` that need not be solved, are scored against the
+  // ground truth; empty: new ones are drawn.
   std::filesystem::path pictures;
   bool strict = false;  // of WantedResults
 };
@@ -30,16 +31,16 @@ struct EvaluateRequest {
 struct EvaluateOutcome {
   ScoreTable table;    // means
   PictureScores each;  // every picture's and frame's own
-  // From the settings that the frames were solved with to those in force; empty: they are the same.
-  std::vector<std::string> setting_changes = {};
+  ScoreOrigin origin = {};
 };
 
-// Writes nothing. Throws Error{Usage} for words that choose nothing, Error{Data} when a frame is not solved,
-// there is no held-out photograph or the ground truth is none; Cancelled.
+// Writes nothing. Throws, before anything is drawn, Error{Usage} for words that choose nothing and pictures
+// without ground truth, Error{Data} when a frame is not solved, there is no held-out photograph, or the
+// ground truth is none or not of this project's cameras and frames; Cancelled.
 EvaluateOutcome evaluate(const EvaluateRequest& request, ComputeDevice& device, Progress& progress);
 
-// kEvaluationFile and kEvaluationFramesFile in the project's folder; nothing where it is read-only. Throws
-// Error{Storage}.
+// kEvaluationFile and kEvaluationFramesFile in the project's folder; nothing where it is read-only, and
+// nothing of pictures that were not drawn from the project. Throws Error{Storage}.
 void keepEvaluation(const Project& project, const EvaluateOutcome& outcome);
 
 }  // namespace beam

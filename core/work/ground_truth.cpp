@@ -8,14 +8,17 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/json_words.h"
+#include "core/base/log.h"
 #include "core/io/capture_description.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/math/color.h"
 #include "core/method/evaluate.h"
+#include "core/scene/channel.h"
 #include "core/scene/transform.h"
 
 namespace beam {
@@ -118,10 +121,12 @@ std::vector<Triple> load(const GroundTruth& t, const fs::path& pictures, const s
       Triple triple{camera, frame, reader(*p), reader(*g),
                     readMask(t.folder / "gt/mask" / camera / (frame + ".png"))};
       if (triple.prediction.width != triple.truth.width || triple.prediction.height != triple.truth.height) {
-        throw Error(Error::Kind::Data,
-                    fmt::format("\"{}\": expected {} x {} pixels as the ground truth has, found {} x {}",
-                                p->string(), triple.truth.width, triple.truth.height, triple.prediction.width,
-                                triple.prediction.height));
+        // Which may lie in a folder of the program: named as below it.
+        throw Error(
+            Error::Kind::Data,
+            fmt::format("the picture {}: expected {} x {} pixels as \"{}\" has, found {} x {}",
+                        p->lexically_relative(pictures).string(), triple.truth.width, triple.truth.height,
+                        g->string(), triple.prediction.width, triple.prediction.height));
       }
       out.push_back(std::move(triple));
     }
@@ -148,6 +153,29 @@ Scores meanScores(const std::string& what, const std::vector<Triple>& triples, c
   }
   s["pictures"] = n;
   return s;
+}
+
+// Folders of pictures, in order of the evaluator.
+std::vector<std::string> mapsOf(const GroundTruth& t) {
+  std::vector<std::string> maps = {"rgb", "base_color", "ao", "roughness", "normal", "depth"};
+  for (const std::string& e : t.environments) maps.push_back(fmt::format("{}_{}", kRelightChannel, e));
+  return maps;
+}
+
+void requireMask(const GroundTruth& t, const View& view, const std::string& frame) {
+  const fs::path mask = t.folder / "gt/mask" / view.name / (frame + ".png");
+  if (!fs::exists(mask))
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\" is not there: no picture of camera {} and frame {} can "
+                            "be scored without its mask",
+                            mask.string(), view.name, frame));
+  const ImageSize size = readImageSize(mask);
+  if (size.width == view.camera.width && size.height == view.camera.height) return;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("\"{}\": expected {} x {} pixels as camera {} of the project has, found {} x {}; the "
+                  "ground truth is not of this capture",
+                  mask.string(), view.camera.width, view.camera.height, view.name, size.width, size.height));
 }
 
 // One factor a channel, least squares over all mask pixels of all pictures, linear.
@@ -275,9 +303,59 @@ void align(GroundTruth& truth, const CaptureSet& capture) {
     return glm::distance(found * p.first, p.second) < kFits * size;
   });
   const bool same = std::abs(scale - 1) < kSame && glm::length(found.translation) < kSame * size;
+  if (!fits) {
+    logWarning(
+        "the cameras of \"{}\" stand otherwise than those of the same names in the project: is it the "
+        "ground truth of this capture?",
+        truth.folder.string());
+  }
   if (!fits || same) return;
   truth.truth_from_capture = found;
   truth.unit_m /= scale;
+}
+
+void keepFrames(GroundTruth& truth, const std::vector<std::string>& names) {
+  std::vector<std::string> before = truth.frames;
+  before.insert(before.end(), truth.gt_frames.begin(), truth.gt_frames.end());
+  const auto other = [&](const std::string& frame) {
+    return std::find(names.begin(), names.end(), frame) == names.end();
+  };
+  std::erase_if(truth.frames, other);
+  std::erase_if(truth.gt_frames, other);
+  if (!truth.frames.empty() || !truth.gt_frames.empty()) return;
+  std::sort(before.begin(), before.end());
+  before.erase(std::unique(before.begin(), before.end()), before.end());
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("\"{}\" has ground truth of none of the frames {}: it has {}", truth.folder.string(),
+                  namesText(names), before.empty() ? std::string("none at all") : namesText(before)));
+}
+
+void requireFits(const GroundTruth& t, const std::vector<View>& views) {
+  bool some = std::any_of(t.gt_frames.begin(), t.gt_frames.end(), [&](const std::string& frame) {
+    return fs::exists(t.folder / "gt/mesh" / (frame + ".ply"));
+  });
+  for (const std::string& what : mapsOf(t)) {
+    for (const View& view : views) {
+      for (const std::string& frame : what == "rgb" ? t.frames : t.gt_frames) {
+        if (!findPicture(t.folder / "gt" / what, view.name, frame)) continue;
+        requireMask(t, view, frame);
+        some = true;
+      }
+    }
+  }
+  if (some) return;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("\"{}\" has no ground truth of the frames and cameras that are scored; expected "
+                  "files such as gt/rgb/{}/{}.png",
+                  t.folder.string(), views.at(0).name, (t.frames.empty() ? t.gt_frames : t.frames).at(0)));
+}
+
+bool hasPictures(const GroundTruth& t, const fs::path& pictures) {
+  const std::vector<std::string> maps = mapsOf(t);
+  return std::any_of(maps.begin(), maps.end(),
+                     [&](const std::string& map) { return fs::is_directory(pictures / map); });
 }
 
 ScoreTable scorePictures(const GroundTruth& t, const fs::path& pictures, Progress& progress,

@@ -26,8 +26,18 @@ GroundTruth openGroundTruth(const std::filesystem::path& folder);
 
 // Takes unit, origin and scale from the cameras that `capture` and the data set both have, so that a copy of
 // the data set in another unit is scored as the original. Axes are the same. With fewer than two cameras, or
-// others, both count as the same.
+// others, both count as the same; of others with a warning.
 void align(GroundTruth& truth, const CaptureSet& capture);
+
+// From now on it is of these frames alone. Throws Error{Data} when it is of none of them.
+void keepFrames(GroundTruth& truth, const std::vector<std::string>& names);
+
+// Before pictures of these test cameras are drawn to be scored. Throws Error{Data} that names the file where
+// a mask is missing or of another size than the camera, and when there is nothing to compare with.
+void requireFits(const GroundTruth& truth, const std::vector<View>& views);
+
+// Whether there is a folder of a map that is scored from pictures.
+bool hasPictures(const GroundTruth& truth, const std::filesystem::path& pictures);
 
 // Scores what is in `pictures` (missing pictures are left out); throws Error{Data} when nothing can be
 // scored. `each` also gets every picture's own scores.

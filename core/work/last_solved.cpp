@@ -5,8 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <set>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/pipeline/setting_changes.h"
@@ -16,8 +19,6 @@
 
 namespace beam {
 namespace {
-
-constexpr std::size_t kMostNamed = 4;
 
 // What the settings of a project solve of what is wanted.
 struct Solved {
@@ -88,30 +89,13 @@ std::vector<std::string> changesOf(const Earlier& earlier, const Project& now) {
   return changes;
 }
 
-}  // namespace
-
-std::string changesText(const std::vector<std::string>& changes) {
-  if (changes.size() <= kMostNamed) return fmt::format("{}", fmt::join(changes, ", "));
-  const std::vector<std::string> named(changes.begin(), changes.begin() + kMostNamed);
-  return fmt::format("{} and {} more", fmt::join(named, ", "), changes.size() - kMostNamed);
-}
-
-void LastSolved::tell() const {
-  if (changes.empty()) return;
-  logWarning(
-      "\"{}\": the results are those of other settings than are in force ({}): beam run it to solve "
-      "the frames anew; --strict refuses",
-      project.folder().string(), changesText(changes));
-}
-
-LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
-  if (project.withoutCapture()) return {project, {}};
+LastSolved lastThatServes(const Project& project, const WantedResults& wanted, const Progress& progress) {
   const Solved now = solvedOf(project, wanted, progress);
   if (now.enough && (now.materials || !wanted.materials_if_any)) return {project, {}};
   const std::optional<Earlier> found = lastThatSolves(project, wanted, now, progress);
   if (!found) return {project, {}};
   const std::vector<std::string> changes = changesOf(*found, project);
-  const std::string told = changes.empty() ? "other takes" : changesText(changes);
+  const std::string told = changes.empty() ? "other takes" : namesText(changes);
   if (wanted.strict) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\": what is wanted is not solved with the settings in force, only before "
@@ -119,6 +103,56 @@ LastSolved lastSolved(const Project& project, const WantedResults& wanted, const
                             project.folder().string(), told));
   }
   return {found->project, changes.empty() ? std::vector<std::string>{told} : changes};
+}
+
+// No record is read where every frame has Gaussians.
+std::vector<FrameIndex> leftOutOf(const Project& project, const WantedResults& wanted,
+                                  const Progress& progress) {
+  const auto sequence = sequenceOf(project, wanted.between ? Shows::Between : Shows::Solved);
+  std::map<std::string, FrameIndex> lacking;
+  for (const FrameIndex frame : framesIn(project, wanted.frames)) {
+    progress.check();
+    if (!sequence->content(frame).gaussians) lacking.emplace(nameOf(*sequence, frame), frame);
+  }
+  if (lacking.empty()) return {};
+  std::set<FrameIndex> left_out;
+  for (const ResultRecord& record : project.store().recordsByAge()) {
+    progress.check();
+    const StepId& step = record.ingredients.step;
+    if (record.lead || step == kMeshStep || !shownOf(project.setup().stages, step).frame) continue;
+    if (const auto frame = lacking.find(record.frame); frame != lacking.end()) left_out.insert(frame->second);
+  }
+  return {left_out.begin(), left_out.end()};
+}
+
+}  // namespace
+
+void LastSolved::tell() const {
+  if (!changes.empty()) {
+    logWarning(
+        "\"{}\": the results are those of other settings than are in force ({}): beam run it to solve "
+        "the frames anew; --strict refuses",
+        project.folder().string(), namesText(changes));
+  }
+  if (left_out.empty()) return;
+  std::vector<std::string> names;
+  std::vector<int> positions;
+  for (const FrameIndex frame : left_out) {
+    names.push_back(project.capture().frames[static_cast<std::size_t>(frame.value)]);
+    positions.push_back(frame.value);
+  }
+  logWarning(
+      "\"{}\": {} {} left out: solved with other settings, or in another take, than the frames that are "
+      "used; beam run it to solve all of them alike",
+      project.folder().string(), nounText(names.size(), "frame"),
+      fmt::format("{} {}", namesText(frameRanges(names, positions)), nounText(names.size(), "is", "are")));
+}
+
+LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
+  if (project.withoutCapture()) return {project, {}};
+  LastSolved last = lastThatServes(project, wanted, progress);
+  if (isAllFrames(wanted.frames)) last.left_out = leftOutOf(last.project, wanted, progress);
+  return last;
 }
 
 }  // namespace beam

@@ -24,7 +24,11 @@ struct LastSolved {
   Project project;                   // with the settings that the frames are taken from; never to be saved
   std::vector<std::string> changes;  // settingChanges from these to those in force; empty: they are the same
 
-  // Logs a warning that names what changed, where something did; once nothing else is refused.
+  // Where all were wanted: frames that it has no Gaussians of, though other settings or takes have.
+  std::vector<FrameIndex> left_out = {};
+
+  // Logs a warning that names what changed, where something did, and one of what is left out; once nothing
+  // else is refused.
   void tell() const;
 };
 
@@ -33,8 +37,5 @@ struct LastSolved {
 // of other settings only on the same surface. Throws Error{Data} where `strict` alone refuses, Error{Usage}
 // for frames that the capture does not have, Cancelled.
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress);
-
-// "surface.iterations 900 → 500; 3 more changes": one line of any number.
-std::string changesText(const std::vector<std::string>& changes);
 
 }  // namespace beam

@@ -42,6 +42,7 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   pictures.skip_existing = request.skip_existing;
   pictures.out = request.out;
   pictures.written_by = writerOf(kCommand);
+  requireDrawable(pictures, renderer.abilities());
   requireFolderTarget(request.out, channelFiles(*sequence, pictures), {kCommand, request.force});
   last.tell();
   const RenderedFiles files = renderChannels(*sequence, pictures, renderer, progress);

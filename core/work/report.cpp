@@ -4,20 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/base/count_text.h"
-#include "core/base/error.h"
-#include "core/base/json_words.h"
-#include "core/base/log.h"
 #include "core/io/file.h"
 #include "core/pipeline/output_target.h"
 #include "core/pipeline/version.h"
 #include "core/stages/project_sequence.h"
 #include "core/work/evaluate_over_time.h"
+#include "core/work/kept_evaluation.h"
 #include "core/work/last_solved.h"
 #include "core/work/report_page.h"
 #include "core/work/score_words.h"
+#include "core/work/selection.h"
 
 namespace beam {
 namespace {
@@ -83,28 +81,6 @@ std::vector<std::string> shownCameras(const Project& project, const QualityHisto
   return cameras;
 }
 
-// What `beam evaluate` left in the project; nothing when it never ran.
-ScoreTable evaluationOf(const Project& project) {
-  const fs::path file = project.folder() / kEvaluationFile;
-  ScoreTable table;
-  if (!fs::exists(file)) return table;
-  try {
-    const auto json = nlohmann::ordered_json::parse(readTextFile(file));
-    for (const auto& [map, scores] : json.items()) {
-      Scores row;
-      if (!scores.is_object()) continue;
-      for (const auto& [name, value] : scores.items()) {
-        if (value.is_number()) row[name] = value.template get<double>();
-      }
-      if (!row.empty()) table.emplace_back(map, std::move(row));
-    }
-  } catch (const nlohmann::json::exception& e) {
-    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(),
-               jsonComplaint(e));
-  }
-  return table;
-}
-
 void addScore(QualityHistory& history, const std::string& frame, const std::string& name, double value) {
   const auto found = std::find_if(history.frames.begin(), history.frames.end(),
                                   [&](const FrameQuality& q) { return q.name == frame; });
@@ -117,20 +93,21 @@ bool isDrawn(const std::string& score) {
          score.find("_scaled.") == std::string::npos;
 }
 
-// What `beam evaluate` last found of the frames, as further scores.
-void addEvaluatedFrames(const Project& project, QualityHistory& history) {
-  const fs::path file = project.folder() / kEvaluationFramesFile;
-  if (!fs::exists(file)) return;
-  try {
-    const auto json = nlohmann::json::parse(readTextFile(file));
-    for (const auto& [frame, entry] : json.at("over_time").at("frames").items()) {
-      for (const auto& [name, value] : entry.at("scores").items())
-        if (isDrawn(name)) addScore(history, frame, name, value.template get<double>());
-    }
-  } catch (const nlohmann::json::exception& e) {
-    logWarning("\"{}\" cannot be understood and is left out of the report: {}", file.string(),
-               jsonComplaint(e));
+// What `beam evaluate` last found, and of what: of frames that were solved anew since there is no curve.
+void addEvaluation(const Project& project, const GaussianSequence& sequence, bool strict, ReportPage& page) {
+  std::vector<FrameIndex> frames;
+  for (const FrameQuality& q : page.history.frames) frames.push_back(q.frame);
+  KeptEvaluation kept = keptEvaluation(project);
+  const ScoredResults shown = resultsOf(sequence, frames);
+  page.evaluation_note = otherResultsText(kept, shown);
+  const bool current = page.evaluation_note.empty();
+  for (const auto& [frame, scores] : kept.frames) {
+    if (!isOf(kept, shown, frame)) continue;
+    for (const auto& [name, value] : scores)
+      if (isDrawn(name)) addScore(page.history, frame, name, value);
   }
+  if (current || !strict) page.evaluation = std::move(kept.table);
+  if (!current && strict) page.evaluation_note += "; --strict leaves it out";
 }
 
 // Flicker along tracked Gaussians, of the results as they are now.
@@ -145,7 +122,8 @@ void addFlicker(const GaussianSequence& sequence, ComputeDevice& device, Progres
   }
 }
 
-std::vector<std::string> findingsOf(const QualityHistory& history) {
+std::vector<std::string> findingsOf(const ReportPage& page) {
+  const QualityHistory& history = page.history;
   std::vector<std::string> findings;
   for (const LeftOutCamera& c : history.left_out)
     findings.push_back(fmt::format("left out of the fit: {}", toText(c, history.defects)));
@@ -153,6 +131,7 @@ std::vector<std::string> findingsOf(const QualityHistory& history) {
   for (const Defect& d : history.defects)
     findings.push_back(fmt::format("camera {} {} ({} {})", d.camera, d.text,
                                    nounText(d.frames.size(), "frame"), fmt::join(d.frames, ", ")));
+  if (!page.evaluation_note.empty()) findings.push_back(page.evaluation_note);
   return findings;
 }
 
@@ -162,9 +141,10 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
   requireFileTarget(request.out, {kReportCommand, request.force});
   const LastSolved last =
       lastSolved(request.project, {.materials_if_any = true, .strict = request.strict}, progress);
-  last.tell();
   const Project& project = last.project;
   const auto sequence = sequenceOf(project, Shows::Solved);
+  const std::size_t solved = selectSolvedFrames("all", *sequence, progress).size();
+  last.tell();
   ReportPage page{project.name(),
                   kProgramVersion,
                   project.setup().stages.infos(),
@@ -173,18 +153,15 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
                   sequence->frames().size(),
                   {},
                   {},
+                  {},
                   {}};
   page.history = qualityHistory(project, progress);
-  if (page.history.frames.empty()) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\": no frame has a result yet: beam run it first",
-                                               project.folder().string()));
-  }
   if (!last.changes.empty())
     page.facts.emplace_back("Of other settings",
                             fmt::format("these results are not of the settings in force; "
                                         "since they were made: {}",
                                         fmt::join(last.changes, ", ")));
-  addEvaluatedFrames(project, page.history);
+  addEvaluation(project, *sequence, request.strict, page);
   {
     Progress part = progress.part(0.5, "compare frames");
     addFlicker(*sequence, device, part, page.history);
@@ -194,9 +171,8 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
     page.pictures = contactSheet(*sequence, project.capture(), shownFrames(page.history),
                                  shownCameras(project, page.history), device, part);
   }
-  page.evaluation = evaluationOf(project);
   writeFileAtomically(request.out, toHtml(page));
-  return {page.history.frames.size(), findingsOf(page.history)};
+  return {solved, page.history.frames.size(), findingsOf(page)};
 }
 
 }  // namespace beam

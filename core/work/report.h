@@ -20,13 +20,14 @@ struct ReportRequest {
 };
 
 struct ReportOutcome {
-  std::size_t frames = 0;  // that the page is about
+  std::size_t solved = 0;  // frames, of those that the page is about
+  std::size_t frames = 0;  // with a result or a failure
   // A sentence each, as the page has them: cameras left out of the fit, what that cost, cameras that do not
-  // fit the others.
+  // fit the others, an evaluation of other results.
   std::vector<std::string> findings;
 };
 
-// Throws Error{Usage} for a place that requireFileTarget refuses, Error{Data} when no frame has a result,
+// Throws Error{Usage} for a place that requireFileTarget refuses, Error{Data} when no frame is solved,
 // Error{Storage}, Cancelled: then nothing is written.
 ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progress& progress);
 

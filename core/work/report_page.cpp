@@ -33,15 +33,6 @@ std::string head(std::initializer_list<const char*> titles) {
   return row + "</tr></thead>\n";
 }
 
-// "000001, 000002 and 5 more".
-std::string namesText(const std::vector<std::string>& names) {
-  const std::vector<std::string> shown(
-      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(kListed, names.size())));
-  std::string text = fmt::format("{}", fmt::join(shown, ", "));
-  if (names.size() > shown.size()) text += fmt::format(" and {} more", names.size() - shown.size());
-  return text;
-}
-
 // What a camera was like over the frames.
 struct CameraRow {
   bool held_out = false;
@@ -141,7 +132,7 @@ class PageWriter {
         const bool known = d.psnr_with > 0 || d.psnr_without > 0;
         out_ +=
             "<tr>" + cell(d.camera, "name") + cell(fmt::format("{} {}.", d.camera, d.text)) +
-            cell(namesText(d.frames)) +
+            cell(namesText(d.frames, kListed)) +
             (known ? number(d.psnr_with, 2) + number(d.psnr_without, 2) : cell("-", "n") + cell("-", "n")) +
             "</tr>\n";
       }
@@ -333,8 +324,12 @@ class PageWriter {
   }
 
   void evaluation() {
+    if (page_.evaluation.empty() && page_.evaluation_note.empty()) return;
+    section("Last evaluation",
+            page_.evaluation.empty() ? "" : "As beam evaluate wrote it, means over pictures.");
+    if (!page_.evaluation_note.empty())
+      out_ += fmt::format("<p class=\"warn\">Attention: {}.</p>\n", escapedHtml(page_.evaluation_note));
     if (page_.evaluation.empty()) return;
-    section("Last evaluation", "As beam evaluate wrote it, means over pictures.");
     static constexpr std::pair<const char*, int> kColumns[] = {
         {"psnr", 2}, {"ssim", 4}, {"psnr_mask", 2}, {"pictures", 0}};
     out_ += "<table>" + head({"Map", "PSNR, dB", "SSIM", "PSNR in mask, dB", "Pictures", "Other figures"}) +
@@ -370,7 +365,8 @@ class PageWriter {
     }
     if (places.empty()) return;
     section("Energies, flicker and other figures over time",
-            "Evaluation: as beam evaluate last found it; the others: from the records of the steps.");
+            "Evaluation: as beam evaluate last found it, of frames that were not solved anew since; the "
+            "others: from the records of the steps.");
     for (const std::string& place : places) {
       if (!place.empty()) out_ += fmt::format("<h3>{}</h3>\n", escapedHtml(place));
       out_ += fmt::format("<div class=\"charts small\">{}</div>\n", charts[place]);

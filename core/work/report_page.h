@@ -26,7 +26,8 @@ struct ReportPage {
   std::size_t frames_in_capture = 0;
   QualityHistory history;
   std::vector<ContactRow> pictures;
-  ScoreTable evaluation;  // the last one of the project
+  ScoreTable evaluation;        // the last one of the project
+  std::string evaluation_note;  // that it is of other results than the page's; empty: it is of these
 };
 
 inline constexpr const char* kReportCommand = "report";  // pages say that it wrote them

@@ -20,7 +20,7 @@ header { border-bottom: 2px solid var(--ink); padding-bottom: 14px; margin-botto
 h1 { margin: 2px 0 4px; font-size: 32px; line-height: 1.2; }
 h2 { margin: 44px 0 12px; font-size: 20px; border-bottom: 1px solid var(--line); padding-bottom: 6px; }
 h3 { margin: 22px 0 6px; font-size: 15px; color: var(--soft); }
-.sub, .note, footer { color: var(--soft); } .sub { margin: 0; } .note, footer { font-size: 13px; }
+.sub, .note, footer { color: var(--soft); } .sub { margin: 0; } .note, footer { font-size: 13px; } .warn { color: var(--bad); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(150px, 1fr)); gap: 10px; }
 .tile { background: var(--tile); padding: 12px 14px; border-radius: 6px; }
 .tile b { display: block; font-size: 21px; font-variant-numeric: tabular-nums; }

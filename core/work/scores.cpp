@@ -8,9 +8,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json tableJson(const ScoreTable& table, const std::vector<std::string>& setting_changes) {
+Json tableJson(const ScoreTable& table, const ScoreOrigin& origin) {
   Json j = Json::object();
-  if (!setting_changes.empty()) j["setting_changes"] = setting_changes;
+  if (!origin.setting_changes.empty()) j["setting_changes"] = origin.setting_changes;
+  if (!origin.results.empty()) j[kResultsKey] = origin.results;
   for (const auto& [name, scores] : table) {
     for (const auto& [key, value] : scores) j[name][key] = value;
   }
@@ -62,13 +63,12 @@ Scores meanOfCameras(const std::map<std::string, Scores>& cameras) {
   return mean;
 }
 
-std::string scoreJson(const ScoreTable& table, const std::vector<std::string>& setting_changes) {
-  return tableJson(table, setting_changes).dump(1, ' ', false, Json::error_handler_t::replace);
+std::string scoreJson(const ScoreTable& table, const ScoreOrigin& origin) {
+  return tableJson(table, origin).dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string scoreJson(const ScoreTable& table, const PictureScores& each,
-                      const std::vector<std::string>& setting_changes) {
-  Json j = tableJson(table, setting_changes);
+std::string scoreJson(const ScoreTable& table, const PictureScores& each, const ScoreOrigin& origin) {
+  Json j = tableJson(table, origin);
   Json frames = Json::object();
   for (const auto& [frame, cameras] : each) {
     frames[frame]["scores"] = meanOfCameras(cameras);

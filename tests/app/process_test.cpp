@@ -66,6 +66,24 @@ TEST_F(Process, DoesNotReadTheGroundTruth) {
   EXPECT_TRUE(exported("with.beam") == exported("without.beam"));
 }
 
+TEST_F(Process, OfACaptureThatMovedSaysHowItIsFoundAgain) {
+  fs::copy(SampleHouse::capture(), at("capture"), fs::copy_options::recursive);
+  ASSERT_EQ(beam(process(at("capture"), "p.beam")).code, 0);
+  const auto products = exported("p.beam");
+  fs::rename(at("capture"), at("moved"));
+  const std::string project = at("p.beam").string();
+  const std::string advice = "beam process FOLDER --out \"" + project + "\" --until capture";
+  for (const Words& words : {Words{"render", project, "--out", at("pictures").string()},
+                             Words{"export", project, "--out", at("splats").string()},
+                             Words{"report", project, "--out", at("page.html").string()}}) {
+    const Said said = beam(words);
+    EXPECT_EQ(said.code, 65) << words[0];
+    EXPECT_THAT(said.err, HasSubstr(advice)) << words[0];
+  }
+  ASSERT_EQ(beam({"process", at("moved").string(), "--out", project, "--until", "capture"}).code, 0);
+  EXPECT_TRUE(exported("p.beam") == products);
+}
+
 TEST_F(Process, StopsAfterSurfaceWithoutAPanoramaAndSaysWhatItNeeds) {
   fs::copy(SampleHouse::capture(), at("capture"), fs::copy_options::recursive);
   fs::remove(at("capture") / "environment.exr");

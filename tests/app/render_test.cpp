@@ -10,6 +10,7 @@ namespace beam::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 
@@ -35,6 +36,13 @@ TEST_F(Render, WritesTheLayersOfACameraAndFrameIntoOneFile) {
   EXPECT_THAT(exrChannels(at("out/layers/cam00/000000.exr")),
               IsSupersetOf({"R", "G", "B", "A", "relight_environment.R", "depth.Z"}));
   EXPECT_FALSE(fs::exists(at("out/rgb")));
+}
+
+TEST_F(Render, RefusesAPanoramaThatNoChannelIsLitBy) {
+  const Said said = beam(command("out", {"--channels", "rgb,depth"}));
+  EXPECT_EQ(said.code, 2);
+  EXPECT_THAT(said.err, AllOf(HasSubstr("--environment"), HasSubstr("rgb, depth"), HasSubstr("relight")));
+  EXPECT_FALSE(fs::exists(at("out")));
 }
 
 TEST_F(Render, LeavesWhatIsThereAndSaysSo) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <regex>
+#include <sstream>
 
 #include "tests/app/cli_support.h"
 
@@ -89,6 +90,30 @@ TEST_F(Report, OfAProjectWithoutResultsSaysWhatToDo) {
   EXPECT_EQ(said.code, 65);
   EXPECT_THAT(said.err, HasSubstr("beam run"));
   EXPECT_FALSE(fs::exists(at("report.html")));
+  ASSERT_EQ(beam({"run", at("p.beam").string(), "--until", "capture"}).code, 0);
+  const Said screened = beam({"report", at("p.beam").string(), "--out", at("report.html").string()});
+  EXPECT_EQ(screened.code, 65);
+  EXPECT_THAT(screened.err, HasSubstr("no frame is solved yet"));
+  EXPECT_FALSE(fs::exists(at("report.html")));
+}
+
+TEST_F(Report, SaysHowManyOfTheFramesAreSolved) {
+  ASSERT_EQ(beam({"new", at("p.beam").string(), "--capture", SampleHouse::capture().string()}).code, 0);
+  ASSERT_EQ(beam({"run", at("p.beam").string(), "--until", "capture"}).code, 0);
+  ASSERT_EQ(beam(Words{"run", at("p.beam").string(), "--until", "surface"} + tiny()).code, 0);
+  const Said said = beam({"report", at("p.beam").string(), "--out", at("report.html").string()});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("the report of 2 frames, 1 solved"));
+}
+
+TEST_F(Report, ScoresOfAnEvaluationFitALine) {
+  const std::string capture = SampleHouse::capture().string(), project = at("p.beam").string();
+  ASSERT_EQ(beam(Words{"process", capture, "--out", project} + tinyTake()).code, 0);
+  const Said said = beam({"evaluate", project, "--ground-truth", capture});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("gaussian_base_color"));
+  std::istringstream lines(said.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
 }
 
 TEST_F(Report, AHeldOutPhotographChangesTheScoreAndNothingElse) {

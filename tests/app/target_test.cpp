@@ -152,6 +152,13 @@ TEST_F(Target, IsLookedAtBeforeTheWorkAndItsFoldersAreMade) {
   EXPECT_EQ(beam({"report", project(), "--out", at("new/deep/page.html")}).code, 0);
   EXPECT_EQ(beam({"status", project(), "--json-file", at("other/s.json")}).code, 0);
   EXPECT_EQ(beam({"report", project(), "--out", at("new")}).code, 2) << "a folder";
+  for (const char* folder : {"none/", "none/.", "none/deep/", "new/"}) {
+    const Said said = beam({"report", project(), "--out", at(folder)});
+    EXPECT_EQ(said.code, 2) << folder << said.err;
+    EXPECT_THAT(said.err, HasSubstr("name of a file")) << folder;
+    EXPECT_EQ(beam({"status", project(), "--json-file", at(folder)}).code, 2) << folder;
+  }
+  EXPECT_FALSE(fs::exists(at("none")));
 }
 
 TEST_F(Target, JsonGoesToStandardOutputOrIntoAFileAndSaysWhoWroteIt) {

@@ -152,6 +152,8 @@ TEST(CountText, SaysOneAndMany) {
   EXPECT_EQ(countText(1, "file was", "files were"), "1 file was");
   EXPECT_EQ(countText(-1234567, "step"), "-1,234,567 steps");
   EXPECT_EQ(nounText(1, "frame") + " " + nounText(2, "frame"), "frame frames");
+  EXPECT_EQ(namesText({"a", "b"}), "a, b");
+  EXPECT_EQ(namesText({"a", "b", "c"}, 2), "a, b and 1 more");
 }
 
 TEST(Progress, PartsCoverTheirShareAndReportsNeverGoBack) {

@@ -54,6 +54,18 @@ TEST(LeftOut, TheLossComparesFramesAndSaysWhatIsNotKnown) {
   EXPECT_THAT(toText(lossOf(std::span(frames).first(1))), IsEmpty());
 }
 
+TEST(LeftOut, AGainIsNotCalledALoss) {
+  const auto told = [](double incomplete, double complete) {
+    const std::vector<ViewScore> all = {scored("a", 30), scored("b", 32), scored("t", complete, true)},
+                                 fewer = {scored("a", 31), scored("b", 9, false, true),
+                                          scored("t", incomplete, true)};
+    return toText(lossOf(std::vector<ScoredFrame>{{"f0", 0, all, {}}, {"f1", 1, fewer, {}}}));
+  };
+  EXPECT_THAT(told(28.09, 28), HasSubstr("The held-out views show no loss: +0.09 dB"));
+  EXPECT_THAT(told(27.999, 28), HasSubstr("no loss: +0.00 dB"));
+  EXPECT_THAT(told(27.9, 28), HasSubstr("The loss shows in the held-out views: -0.10 dB"));
+}
+
 TEST(LeftOut, ACameraWithoutAPictureCountsAsLeftOut) {
   const std::vector<ViewScore> all = {scored("a", 30), scored("b", 32), scored("t", 28, true)},
                                fewer = {scored("a", 31), scored("t", 27, true)};

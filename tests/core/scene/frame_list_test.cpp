@@ -62,5 +62,10 @@ TEST(FrameList, RefusesWordsItDoesNotUnderstand) {
   }
 }
 
+TEST(FrameList, IsToldBackAsRanges) {
+  EXPECT_EQ(frameRanges({"f3", "f4", "f5", "f9"}, {3, 4, 5, 9}), (std::vector<std::string>{"f3-f5", "f9"}));
+  EXPECT_TRUE(frameRanges({}, {}).empty());
+}
+
 }  // namespace
 }  // namespace beam

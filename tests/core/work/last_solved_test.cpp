@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 constexpr const char* kChange = "surface.iterations 100 → 300";
 
@@ -94,6 +95,25 @@ TEST_F(LastSolvedTest, TakesAllFramesFromTheSameSettings) {
   EXPECT_THAT(lastSolved(now, {.frames = "0-1"}, progress_).changes, ElementsAre(kChange));
 }
 
+TEST_F(LastSolvedTest, NamesInOneWarningTheFramesThatOtherSettingsAloneHave) {
+  run(changed(), {.frames = {FrameIndex{0}}});
+  const Project now = Project::open(folder_ / "capture.beam", standInPipeline({.frames = 3}));
+  const LastSolved last = lastSolved(now, {}, progress_);
+  EXPECT_THAT(last.left_out, ElementsAre(FrameIndex{1}, FrameIndex{2}));
+  last.tell();
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_THAT(warnings_[0], HasSubstr("frames 000001-000002 are left out"));
+  EXPECT_THAT(lastSolved(now, {.strict = true}, progress_).left_out, SizeIs(2)) << "strict refuses no more";
+  EXPECT_THAT(lastSolved(now, {.frames = "0"}, progress_).left_out, IsEmpty()) << "not asked for";
+}
+
+TEST_F(LastSolvedTest, LeavesOutNoFrameThatNobodySolvedOrAScoutPassed) {
+  const Project part = solvedStandIn(folder_.path(), {.frames = 3}, {.frames = {FrameIndex{0}}});
+  EXPECT_THAT(lastSolved(part, {}, progress_).left_out, IsEmpty());
+  const Project scouted = solvedStandIn(folder_ / "scout", {.frames = 3}, {.every = 2});
+  EXPECT_THAT(lastSolved(scouted, {.between = true}, progress_).left_out, IsEmpty());
+}
+
 TEST_F(LastSolvedTest, TakesMaterialsOfOtherSettingsOnTheSurfaceInForce) {
   const Project project = changed("materials.iterations", 7);
   const WantedResults wanted{.materials_if_any = true};
@@ -129,7 +149,8 @@ TEST_F(LastSolvedTest, ServesPicturesExportsScoresAndTheReportWhichIsMarked) {
                                      .out = folder_ / "pictures"};
   EXPECT_EQ(renderFrames(pictures, *newCpuSceneRenderer(*device_), progress_).frames, 3u);
   EXPECT_EQ(exportFrames({project, "all", false, folder_ / "splats"}, progress_).files.size(), 3u);
-  EXPECT_THAT(evaluate({project, "all", {}, {}}, *device_, progress_).setting_changes, ElementsAre(kChange));
+  EXPECT_THAT(evaluate({project, "all", {}, {}}, *device_, progress_).origin.setting_changes,
+              ElementsAre(kChange));
   EXPECT_EQ(report({project, folder_ / "page.html"}, *device_, progress_).frames, 3u);
   EXPECT_THAT(readTextFile(folder_ / "page.html"), HasSubstr(kChange));
   const auto names_it = [](const std::string& warning) { return warning.find(kChange) != std::string::npos; };

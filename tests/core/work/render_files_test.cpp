@@ -282,5 +282,14 @@ TEST_F(RenderFiles, AnInterruptedRenderGoesOn) {
   EXPECT_EQ(filesIn(request.out), filesIn(folder_ / "whole"));
 }
 
+TEST_F(RenderFiles, TwoPanoramasOfOneNameAreRefusedAndBothNamed) {
+  RenderFramesRequest request = all(folder_ / "out");
+  request.environments = {folder_ / "a/x.exr", folder_ / "b/x.exr"};
+  const std::string said = messageOf(Error::Kind::Usage, [&] { render(request); });
+  EXPECT_THAT(said, AllOf(HasSubstr((folder_ / "a/x.exr").string()),
+                          HasSubstr((folder_ / "b/x.exr").string()), HasSubstr("relight_x")));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
 }  // namespace
 }  // namespace beam::testing

@@ -141,13 +141,14 @@ TEST_F(Work, AnEvaluationIsKeptInTheProject) {
                  frames = project.folder() / kEvaluationFramesFile;
   EXPECT_FALSE(fs::exists(means));
   keepEvaluation(project, outcome);
-  EXPECT_EQ(readTextFile(means), scoreJson(outcome.table) + "\n");
-  EXPECT_EQ(readTextFile(frames), scoreJson(outcome.table, outcome.each) + "\n");
+  EXPECT_EQ(readTextFile(means), scoreJson(outcome.table, outcome.origin) + "\n");
+  EXPECT_EQ(readTextFile(frames), scoreJson(outcome.table, outcome.each, outcome.origin) + "\n");
 }
 
 TEST_F(Work, ReportWritesOnePageOfAllFrames) {
   const ReportOutcome outcome = report({solved(), folder_ / "page.html"}, *device_, progress_);
   EXPECT_EQ(outcome.frames, static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(outcome.solved, outcome.frames);
   EXPECT_THAT(outcome.findings, IsEmpty());
   EXPECT_THAT(written(), ElementsAre("page.html"));
   EXPECT_THAT(readTextFile(folder_ / "page.html"), HasSubstr("data:image/jpeg;base64,"));
@@ -155,8 +156,15 @@ TEST_F(Work, ReportWritesOnePageOfAllFrames) {
 
 TEST_F(Work, ReportOfNothingIsRefused) {
   const Project project = newStandIn(folder_ / "p");
-  messageOf(Error::Kind::Data, [&] { report({project, folder_ / "page.html"}, *device_, progress_); });
-  EXPECT_FALSE(fs::exists(folder_ / "page.html"));
+  const auto refused = [&](const Project& p) {
+    const std::string said = messageOf(Error::Kind::Data, [&] {
+      report({p, folder_ / "page.html"}, *device_, progress_);
+    });
+    EXPECT_THAT(said, HasSubstr("no frame is solved yet"));
+    EXPECT_FALSE(fs::exists(folder_ / "page.html"));
+  };
+  refused(project);
+  refused(solvedAgain(project, {}, {.until = "capture"}));
 }
 
 }  // namespace
