@@ -7,12 +7,17 @@
 #include <utility>
 #include <vector>
 
+#include "core/method/evaluate.h"
+
 namespace beam {
 
 using Scores = std::map<std::string, double>;  // "psnr", "ssim", "psnr_mask", "angle_deg", "mae_mm", ...
 using ScoreTable = std::vector<std::pair<std::string, Scores>>;  // by map, in the evaluator's order
 // By frame, then camera ("" for scores of the whole frame), then name: "rgb.psnr", "mesh.chamfer_mm".
 using PictureScores = std::map<std::string, std::map<std::string, Scores>>;
+
+// Under their names after `prefix`: "", "rgb.". A score that there is none of is left out.
+void put(const PictureScore& score, const std::string& prefix, Scores& scores);
 
 // In the project's folder: what its last evaluation found, as means and frame by frame.
 inline constexpr const char* kEvaluationFile = "evaluation.json";
