@@ -10,7 +10,9 @@
 
 #include "core/base/count_text.h"
 #include "core/base/error.h"
+#include "core/base/fields.h"
 #include "core/base/log.h"
+#include "core/base/word_list.h"
 #include "core/io/capture_description.h"
 #include "core/io/capture_pictures.h"
 #include "core/io/mesh_ply.h"
@@ -67,8 +69,11 @@ void holdOut(CaptureDescription& d, const std::vector<std::string>& wanted) {
         if (matchesName(w, c.name)) c.split = Split::Test;
       }
     } else {
+      std::vector<std::string> names;
+      for (const DescribedCamera& c : d.cameras) names.push_back(c.name);
       throw Error(Error::Kind::Usage,
-                  fmt::format("--hold-out {}: the capture has no camera of that name or like it", w));
+                  fmt::format("--hold-out {}: the capture has no camera of that name or like it; {}", w,
+                              knownNames("cameras", w, names)));
     }
   }
 }
@@ -130,14 +135,6 @@ std::vector<std::string> framesOf(const CaptureDescription& d) {
     });
   }
   return frames;
-}
-
-// "a, b, c and 12 more".
-std::string shortList(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 5;
-  const std::vector<std::string> first(names.begin(), names.begin() + std::min(names.size(), kShown));
-  const std::string text = fmt::format("{}", fmt::join(first, ", "));
-  return names.size() <= kShown ? text : fmt::format("{} and {} more", text, names.size() - kShown);
 }
 
 // One row of the table: the pictures and masks of a camera by frame.

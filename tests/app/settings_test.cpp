@@ -149,6 +149,10 @@ TEST_F(Settings, CamerasAreChosenByPatternsAndWordsTogether) {
   EXPECT_THAT(draws("train, *0").out, HasSubstr("of 6 cameras"));
   EXPECT_THAT(draws("ALL").out, HasSubstr("cameras"));
   for (const char* nothing : {"", " , ", "zebra*", "zebra"}) EXPECT_EQ(draws(nothing).code, 2) << nothing;
+  for (const char* nothing : {"zebra*", "zebra"})
+    EXPECT_THAT(draws(nothing).err, HasSubstr("the cameras are cam00, ")) << nothing;
+  EXPECT_THAT(beam({"check", SampleHouse::capture().string(), "--hold-out", "zebra"}).err,
+              HasSubstr("the cameras are cam00, "));
   EXPECT_EQ(beam({"render", project(), "--channels", "", "--out", at("p")}).code, 2);
   EXPECT_EQ(beam({"check", SampleHouse::capture().string(), "--hold-out", "none", "--up", "+y"}).code, 0);
 }

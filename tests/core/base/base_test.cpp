@@ -15,6 +15,7 @@
 #include "core/base/parallel.h"
 #include "core/base/progress.h"
 #include "core/base/rng.h"
+#include "core/base/word_list.h"
 
 namespace beam {
 namespace {
@@ -103,6 +104,21 @@ TEST(Fields, AnUnknownNameIsToldWithASimilarOneOrWhereToLook) {
             "there is no setting \"itertions\"; did you mean \"iterations\"?");
   EXPECT_EQ(noSuchName("setting", "colour", {"cap", "iterations"}, "beam stages lists them"),
             "there is no setting \"colour\"; beam stages lists them");
+}
+
+TEST(Fields, KnownNamesAreAllOfFewAndTheNearestOfMany) {
+  EXPECT_EQ(knownNames("cameras", "door", {"cam00", "cam01"}), "the cameras are cam00, cam01");
+  std::vector<std::string> many;
+  for (int i = 0; i < 40; ++i) many.push_back("cam" + std::to_string(10 + i));
+  many.emplace_back("door1");
+  const std::string text = knownNames("cameras", "door", many);
+  EXPECT_THAT(text, ::testing::StartsWith("the cameras nearest to it are door1, "));
+  EXPECT_THAT(text, ::testing::EndsWith("(of 41)"));
+}
+
+TEST(WordList, AShortListSaysHowManyMoreThereAre) {
+  EXPECT_EQ(shortList({"a", "b"}, 2), "a, b");
+  EXPECT_EQ(shortList({"a", "b", "c", "d"}, 2), "a, b and 2 more");
 }
 
 TEST(Fields, JsonHoldsEveryValue) {
