@@ -17,7 +17,6 @@
 #include "core/io/capture_check.h"
 #include "core/pipeline/output_target.h"
 #include "core/pipeline/path_kind.h"
-#include "core/pipeline/project.h"
 #include "core/sample/make_sample.h"
 
 namespace beam {
@@ -32,12 +31,7 @@ struct CheckFlags {
 
 int runCheck(const CheckFlags& flags, Console& console) {
   ImportOptions options;
-  std::error_code failed;
-  if (Project::isProject(flags.path) || !std::filesystem::exists(flags.path, failed)) {
-    throw Error(Error::Kind::Data,
-                fmt::format("beam check looks at a capture, a panorama or splats; \"{}\" {}", flags.path,
-                            kindInWords(flags.path)));
-  }
+  requireCheckable(flags.path);
   if (flags.hold_out) options.hold_out = parseHoldOut(*flags.hold_out);
   if (!flags.up.empty()) options.up = parseUpAxis(flags.up);
   if (!flags.unit.empty()) options.unit_m = parseUnit(flags.unit);
@@ -46,6 +40,8 @@ int runCheck(const CheckFlags& flags, Console& console) {
   for (const std::string& w : report.warnings) console.warning(w);
   answer(
       flags.answer, "check", console, [&] { return toText(report); }, [&] { return toJson(report); });
+  if (const std::string refusal = refusalOf(report); !refusal.empty())
+    throw Error(Error::Kind::Data, refusal);
   return flags.strict && !report.warnings.empty() ? exitCode(Error::Kind::Data) : 0;
 }
 

@@ -11,6 +11,7 @@
 #include "app/cli/json_reporter.h"
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
+#include "core/base/log.h"
 #include "core/base/word_list.h"
 #include "core/io/image_file.h"
 #include "core/pipeline/machine_times.h"
@@ -59,7 +60,9 @@ void requirePanorama(const std::filesystem::path& file) {
     throw Error(Error::Kind::Data, fmt::format("--environment expects a panorama (.exr, .hdr); \"{}\" {}",
                                                file.string(), kindInWords(file)));
   }
-  makeEnvironment(readRadiance(file));
+  const Environment light = makeEnvironment(readRadiance(file));
+  if (const std::string doubt = shapeDoubt(light.radiance, file.string()); !doubt.empty())
+    logWarning("{}", doubt);
 }
 
 // Of this machine in any project, and what the records of this one say.

@@ -222,10 +222,18 @@ void warnOfSeeds(const SubjectMeasure& subject, std::size_t count, const fs::pat
   }
 }
 
+void warnOfInvertedMasks(const fs::path& folder, std::vector<std::string>& warnings) {
+  warnings.push_back(fmt::format(
+      "\"{}\": the masks look inverted: expected white where the subject is, found white along the "
+      "borders of the pictures and black inside; invert them. The subject's size is not measured",
+      folder.string()));
+}
+
 // Where a turned capture lies, as it is found when a project is made.
 CapturePlacement foundPlacement(const CaptureSet& turned, const UnitHints& hints, const fs::path& folder,
                                 std::vector<std::string>& warnings) {
   const SubjectMeasure subject = measureSubject(turned);
+  if (subject.masks_look_inverted) warnOfInvertedMasks(folder, warnings);
   warnOfSeeds(subject, turned.seed_points.position_m.size(), folder, warnings);
   return placementOf(subject, hints, turned.up);
 }

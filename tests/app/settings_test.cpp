@@ -169,6 +169,35 @@ TEST_F(Settings, TheWrongKindOfThingIsToldWhatItIs) {
     EXPECT_EQ(beam(words).code, 65);
 }
 
+TEST_F(Settings, CheckSaysWhatAFileIsThatItDoesNotLookAt) {
+  const auto check = [&](const char* name, const std::string& bytes) {
+    std::ofstream(at(name)) << bytes;
+    const Said said = beam({"check", at(name)});
+    EXPECT_EQ(said.code, 65) << name;
+    return said.err;
+  };
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
+  EXPECT_THAT(check("m.ply", ply + "element face 2\nproperty list uchar int vertex_indices\nend_header\n"),
+              HasSubstr("is a mesh (1 vertex, 2 triangles)"));
+  EXPECT_THAT(check("p.ply", ply + "end_header\n0\n"),
+              AllOf(HasSubstr("is a point cloud"), HasSubstr("scale_0")));
+  EXPECT_THAT(check("s.spz", "x"), AllOf(HasSubstr("splats of a kind that is not read"), HasSubstr(".ply")));
+  EXPECT_THAT(check("s.sog", "PK"), HasSubstr("splats of a kind that is not read"));
+  EXPECT_THAT(check("environment.png", "x"),
+              AllOf(HasSubstr("is a PNG or JPEG picture"), HasSubstr(".exr or .hdr")));
+  EXPECT_THAT(check("dataset.json", "{}"), HasSubstr("name the folder"));
+}
+
+TEST_F(Settings, CheckEndsWithAnErrorWhereNoPictureCanBeUsed) {
+  std::filesystem::copy(SampleHouse::capture(), at("c"), std::filesystem::copy_options::recursive);
+  EXPECT_EQ(beam({"check", at("c")}).code, 0);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(at("c") + "/images"))
+    if (entry.is_regular_file()) std::ofstream(entry.path()) << "no picture";
+  const Said said = beam({"check", at("c")});
+  EXPECT_EQ(said.code, 65);
+  EXPECT_THAT(said.err, HasSubstr("cannot be processed"));
+}
+
 TEST_F(Settings, APanoramaIsReadBeforeTheProjectIsMade) {
   std::ofstream(at("broken.exr")) << "no picture";
   const Said said = beam(
