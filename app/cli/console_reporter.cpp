@@ -70,7 +70,7 @@ void ConsoleReporter::show(const JobWaiting& e) {
 void ConsoleReporter::show(const JobFinished& e) {
   console_.endProgress();
   tellReused();
-  for (const std::string& note : e.notes) answers_ ? console_.print(note) : console_.info(note);
+  for (const std::string& note : e.notes) answers_ ? console_.tell(note) : console_.info(note);
   switch (e.outcome) {
     case JobOutcome::Done:
       console_.info(e.computed == 0

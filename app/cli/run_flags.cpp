@@ -74,7 +74,7 @@ StepTimes knownTimes(const Project& project) {
 
 int tellPlan(const Project& project, const RunRequest& request, const RunFlags& flags, Console& console) {
   const RunEstimate estimate = estimateRun(project, request, knownTimes(project));
-  console.print(flags.json ? toJson(estimate) : toText(estimate));
+  flags.json ? console.print(toJson(estimate)) : console.tell(toText(estimate));
   return 0;
 }
 
