@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
+#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "app/cli/answer.h"
@@ -53,16 +56,23 @@ struct SampleFlags {
   DeviceChoice device;
 };
 
-void applySize(const std::string& size, SampleOptions& options) {
+// The whole of it; 0: it is no number.
+int sideOf(std::string_view digits) {
+  int side = 0;
+  const char* last = digits.data() + digits.size();
+  const auto [end, failed] = std::from_chars(digits.data(), last, side);
+  return failed == std::errc() && end == last ? side : 0;
+}
+
+void applySize(std::string_view size, SampleOptions& options) {
+  constexpr int kLeast = 16, kMost = 8192;
   const std::size_t x = size.find('x');
-  int width = 0, height = 0;
-  if (x != std::string::npos) {
-    width = std::atoi(size.substr(0, x).c_str());
-    height = std::atoi(size.substr(x + 1).c_str());
-  }
-  if (width < 16 || height < 16 || width > 8192 || height > 8192) {
-    throw Error(Error::Kind::Usage,
-                fmt::format("--size expects WIDTHxHEIGHT of 16 to 8192 pixels, found \"{}\"", size));
+  const int width = sideOf(size.substr(0, x));
+  const int height = x == std::string_view::npos ? 0 : sideOf(size.substr(x + 1));
+  if (std::min(width, height) < kLeast || std::max(width, height) > kMost) {
+    throw Error(
+        Error::Kind::Usage,
+        fmt::format("--size expects WIDTHxHEIGHT of {} to {} pixels, found \"{}\"", kLeast, kMost, size));
   }
   options.width = width;
   options.height = height;

@@ -158,6 +158,36 @@ TEST(Words, ThatAreUnknownAreToldWithTheSimilarOneOrNone) {
   expectUsage({"status", "x", "y"}, "beam status: \"y\" is a word too many. See beam status --help");
 }
 
+TEST(Words, ThatPeopleTypeForACommandNameIt) {
+  expectUsage({"import", "x"}, "beam: there is no command \"import\"; did you mean beam new or beam check?");
+  expectUsage(
+      {"relight", "x", "--out", "y"},
+      "beam: there is no command \"relight\"; did you mean beam render --channels relight --environment");
+  expectUsage({"Train"}, "beam: there is no command \"Train\"; did you mean beam run?");
+  const std::string commands = beam({"help", "--list"}).out + "\n";
+  for (const char* word : {"convert", "view", "gc", "info", "eval", "validate", "config", "demo", "man"}) {
+    const std::string err = beam({word}).err;
+    std::smatch meant;
+    ASSERT_TRUE(std::regex_search(err, meant, std::regex("did you mean (beam [a-z]+|beam-studio)"))) << err;
+    if (meant[1] != "beam-studio") {
+      EXPECT_THAT(commands, HasSubstr(meant[1].str() + "\n"));
+    }
+    EXPECT_THAT(commands, Not(HasSubstr(std::string("beam ") + word + "\n"))) << "it is a command by now";
+  }
+}
+
+TEST(Words, BehindTwoDashesAFlagIsToldWhereItBelongs) {
+  expectUsage({"run", "--", "x", "--dry-run"},
+              "beam run: \"--dry-run\" stands behind \"--\", where nothing is taken for a flag");
+}
+
+TEST(Words, ThatAreHalfANumberAreRefused) {
+  const TempDir dir;
+  for (const char* size : {"16x16x16", "16x17abc", "x16", "16", "16 x 16", "+16x16", "16x"})
+    expectUsage({"sample", (dir / "s").string(), "--size", size}, "--size expects WIDTHxHEIGHT");
+  EXPECT_FALSE(fs::exists(dir / "s"));
+}
+
 TEST(Words, ThatAreMissingOrWrongAreToldAsSentences) {
   expectUsage({"run"}, "beam run: PROJECT is missing (Project folder). See beam run --help");
   expectUsage({"render", "x"}, "beam render: --out FOLDER is missing (Folder for the pictures). See");
