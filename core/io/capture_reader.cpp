@@ -34,7 +34,7 @@ CaptureDescription describedBy(const fs::path& folder) {
   if (auto d = readColmapModel(folder)) return *d;
   throw Error(Error::Kind::Data,
               fmt::format("\"{}\" is no capture: expected dataset.json, transforms.json or a COLMAP "
-                          "model in sparse/0, found none of them",
+                          "model in sparse/0, found none of them; beam help captures tells what each holds",
                           folder.string()));
 }
 

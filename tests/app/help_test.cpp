@@ -111,6 +111,49 @@ TEST(Help, OfEveryTopicFitsATerminal) {
   EXPECT_EQ(beam({"help"}).out, beam({"--help"}).out);
 }
 
+TEST(Help, OfSeveralIsThatOfEach) {
+  EXPECT_EQ(beam({"help", "render", "files"}).out,
+            beam({"help", "render"}).out + "\n" + beam({"help", "files"}).out);
+  expectUsage({"help", "render", "exprot"},
+              "beam help: there is no topic or command \"exprot\"; did you mean \"export\"?");
+  expectUsage({"help", "render", "--list"}, "beam help: --list is of everything");
+}
+
+TEST(Help, AsJsonOfACommandIsOfThatAlone) {
+  const json run = json::parse(beam({"help", "run", "--json"}).out);
+  ASSERT_EQ(run.at("commands").size(), 1u);
+  EXPECT_EQ(run["commands"][0].at("command"), "beam run");
+  EXPECT_TRUE(run.at("topics").empty());
+  EXPECT_EQ(run.at("json").size(), 2u) << "of run and of run --dry-run";
+  const json frames = json::parse(beam({"help", "frames", "--json"}).out);
+  EXPECT_TRUE(frames.at("commands").empty());
+  EXPECT_EQ(frames["topics"].at(0).at("text").get<std::string>() + "\n", beam({"help", "frames"}).out);
+}
+
+TEST(Help, OfCapturesNamesWhatLiesInOneAndIsNamedWhereOneIsAskedFor) {
+  const std::string text = beam({"help", "captures"}).out;
+  const TempDir dir;
+  for (const auto& entry : fs::directory_iterator(SampleHouse::capture())) {
+    const std::string name = entry.path().filename().string();
+    if (name != "gt") {
+      EXPECT_THAT(text, HasSubstr(name));
+    }
+  }
+  for (const Words& words : std::vector<Words>{
+           {"new", "--help"}, {"process", "--help"}, {"check", dir.path().string()}, {"help"}}) {
+    const Said said = beam(words);
+    EXPECT_THAT(flat(said.out + said.err),
+                ::testing::ContainsRegex("beam help captures|captures +what the folder"));
+  }
+}
+
+TEST(Help, OfFilesNamesWhatAProjectHolds) {
+  const std::string text = beam({"help", "files"}).out;
+  for (const auto& entry : fs::directory_iterator(SolvedHouse::project()))
+    EXPECT_THAT(text, HasSubstr(entry.path().filename().string()));
+  EXPECT_THAT(flat(text), Not(HasSubstr("what the window told")));
+}
+
 TEST(Help, OfFilesNamesEveryChannel) {
   const std::string text = beam({"help", "files"}).out;
   for (const std::string& id : channelIds()) EXPECT_THAT(text, HasSubstr("  " + id));
