@@ -39,7 +39,7 @@ void answer(const AnswerFlags& flags, const std::string& command, Console& conso
   const bool print_json = flags.json || flags.json_file == "-";
   const std::string whole = print_json || toFile(flags) ? signedBy(command, json()) : std::string();
   if (toFile(flags)) writeFileAtomically(flags.json_file, whole + "\n");
-  console.print(print_json ? whole : words());
+  print_json ? console.print(whole) : console.tell(words());
 }
 
 }  // namespace beam

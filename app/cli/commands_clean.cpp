@@ -12,6 +12,7 @@
 #include "app/cli/commands.h"
 #include "core/base/count_text.h"
 #include "core/base/error.h"
+#include "core/base/word_list.h"
 #include "core/pipeline/clean_results.h"
 
 namespace beam {
@@ -113,15 +114,11 @@ std::string lastOnesText(const CleanPlan& plan) {
 }
 
 std::string goneText(const CleanPlan& plan) {
-  constexpr std::size_t kMostNamed = 3;
   if (plan.gone.empty()) return {};
-  const std::size_t named = std::min(kMostNamed, plan.gone.size());
-  const std::string more =
-      plan.gone.size() > named ? fmt::format(" and {} more", plan.gone.size() - named) : std::string();
   return fmt::format(
-      "results that would go were made of what the capture does not have now: {}{}; put it back, for with it "
+      "results that would go were made of what the capture does not have now: {}; put it back, for with it "
       "they may be in force",
-      fmt::join(plan.gone.begin(), plan.gone.begin() + static_cast<std::ptrdiff_t>(named), ", "), more);
+      shortList(plan.gone));
 }
 
 int runClean(const CleanFlags& flags, CommandContext& context) {

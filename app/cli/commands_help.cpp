@@ -35,27 +35,24 @@ std::vector<std::string> commandNames(const CLI::App& app) {
   return names;
 }
 
-// Of a topic or of a command, several words for one below another.
-std::string helpOf(const CLI::App& app, const std::vector<std::string>& words) {
-  if (words.empty()) return helpText(app);
+std::string helpOf(const CLI::App& app, const std::string& word) {
   for (const HelpTopic& topic : helpTopics())
-    if (words.size() == 1 && words.front() == topic.name) return topic.text();
-  const CLI::App* command = &app;
+    if (word == topic.name) return topic.text();
+  for (const CLI::App* command : commandsOf(app))
+    if (word == command->get_name()) return helpText(*command);
+  throw Error(Error::Kind::Bug, fmt::format("no help of \"{}\"", word));
+}
+
+void requireKnown(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string> known = commandNames(app);
+  for (const std::string& topic : topicNames()) known.push_back(topic);
   for (const std::string& word : words) {
-    const std::vector<const CLI::App*> below = commandsOf(*command);
-    const auto found =
-        std::find_if(below.begin(), below.end(), [&](const CLI::App* c) { return c->get_name() == word; });
-    if (found == below.end()) {
-      std::vector<std::string> known = commandNames(*command);
-      for (const std::string& topic : topicNames()) known.push_back(topic);
-      throw Error(Error::Kind::Usage,
-                  fmt::format("beam help: {} Topics: {}. Commands: {}.",
-                              noSuchName("topic or command", word, known, "there are these."),
-                              fmt::join(topicNames(), ", "), fmt::join(commandNames(*command), ", ")));
-    }
-    command = *found;
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    throw Error(Error::Kind::Usage,
+                fmt::format("beam help: {} Topics: {}. Commands: {}.",
+                            noSuchName("topic or command", word, known, "there are these."),
+                            fmt::join(topicNames(), ", "), fmt::join(commandNames(app), ", ")));
   }
-  return helpText(*command);
 }
 
 std::string pathList(const CLI::App& app) {
@@ -65,9 +62,18 @@ std::string pathList(const CLI::App& app) {
 }
 
 std::string helpAnswer(const CLI::App& app, const HelpFlags& flags) {
-  if (flags.json) return helpJson(app);
+  requireKnown(app, flags.words);
+  if (!flags.words.empty() && (flags.list || flags.markdown)) {
+    throw Error(Error::Kind::Usage, fmt::format("beam help: --{} is of everything; leave \"{}\" away",
+                                                flags.list ? "list" : "markdown", flags.words.front()));
+  }
+  if (flags.json) return helpJson(app, flags.words);
   if (flags.markdown) return helpMarkdown(app);
-  return flags.list ? pathList(app) : helpOf(app, flags.words);
+  if (flags.list) return pathList(app);
+  if (flags.words.empty()) return helpText(app);
+  std::vector<std::string> pages;
+  for (const std::string& word : flags.words) pages.push_back(helpOf(app, word));
+  return fmt::format("{}", fmt::join(pages, "\n\n"));
 }
 
 }  // namespace
@@ -86,10 +92,11 @@ void addHelpCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("help", "Explain a command or a topic");
   std::vector<std::string> words = topicNames();
   for (const std::string& name : commandNames(app)) words.push_back(name);
-  command->add_option("TOPIC", flags->words, "A topic or a command; the overview when nothing is said")
+  command->add_option("TOPIC", flags->words, "Topics and commands; the overview when nothing is said")
       ->check(someOf(words));
   command->add_flag("--list", flags->list, "Print every command, one a line");
-  command->add_flag("--json", flags->json, "Print every command, flag and example as JSON");
+  command->add_flag("--json", flags->json,
+                    "Print every command, flag and example as JSON; those of TOPIC alone where it is named");
   command->add_flag("--markdown", flags->markdown, "Print all help as one Markdown page")->group("");
   command->callback([flags, &app, &context] {
     context.action = [flags, &app, &context] {

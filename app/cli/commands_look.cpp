@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
+#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "app/cli/answer.h"
@@ -17,7 +20,6 @@
 #include "core/io/capture_check.h"
 #include "core/pipeline/output_target.h"
 #include "core/pipeline/path_kind.h"
-#include "core/pipeline/project.h"
 #include "core/sample/make_sample.h"
 
 namespace beam {
@@ -32,12 +34,7 @@ struct CheckFlags {
 
 int runCheck(const CheckFlags& flags, Console& console) {
   ImportOptions options;
-  std::error_code failed;
-  if (Project::isProject(flags.path) || !std::filesystem::exists(flags.path, failed)) {
-    throw Error(Error::Kind::Data,
-                fmt::format("beam check looks at a capture, a panorama or splats; \"{}\" {}", flags.path,
-                            kindInWords(flags.path)));
-  }
+  requireCheckable(flags.path);
   if (flags.hold_out) options.hold_out = parseHoldOut(*flags.hold_out);
   if (!flags.up.empty()) options.up = parseUpAxis(flags.up);
   if (!flags.unit.empty()) options.unit_m = parseUnit(flags.unit);
@@ -46,6 +43,8 @@ int runCheck(const CheckFlags& flags, Console& console) {
   for (const std::string& w : report.warnings) console.warning(w);
   answer(
       flags.answer, "check", console, [&] { return toText(report); }, [&] { return toJson(report); });
+  if (const std::string refusal = refusalOf(report); !refusal.empty())
+    throw Error(Error::Kind::Data, refusal);
   return flags.strict && !report.warnings.empty() ? exitCode(Error::Kind::Data) : 0;
 }
 
@@ -57,16 +56,23 @@ struct SampleFlags {
   DeviceChoice device;
 };
 
-void applySize(const std::string& size, SampleOptions& options) {
+// The whole of it; 0: it is no number.
+int sideOf(std::string_view digits) {
+  int side = 0;
+  const char* last = digits.data() + digits.size();
+  const auto [end, failed] = std::from_chars(digits.data(), last, side);
+  return failed == std::errc() && end == last ? side : 0;
+}
+
+void applySize(std::string_view size, SampleOptions& options) {
+  constexpr int kLeast = 16, kMost = 8192;
   const std::size_t x = size.find('x');
-  int width = 0, height = 0;
-  if (x != std::string::npos) {
-    width = std::atoi(size.substr(0, x).c_str());
-    height = std::atoi(size.substr(x + 1).c_str());
-  }
-  if (width < 16 || height < 16 || width > 8192 || height > 8192) {
-    throw Error(Error::Kind::Usage,
-                fmt::format("--size expects WIDTHxHEIGHT of 16 to 8192 pixels, found \"{}\"", size));
+  const int width = sideOf(size.substr(0, x));
+  const int height = x == std::string_view::npos ? 0 : sideOf(size.substr(x + 1));
+  if (std::min(width, height) < kLeast || std::max(width, height) > kMost) {
+    throw Error(
+        Error::Kind::Usage,
+        fmt::format("--size expects WIDTHxHEIGHT of {} to {} pixels, found \"{}\"", kLeast, kMost, size));
   }
   options.width = width;
   options.height = height;

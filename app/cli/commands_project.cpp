@@ -103,6 +103,8 @@ std::string statusAsJson(const Project& project, const DiskUse& use) {
   return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+constexpr const char* kCaptureHelp = "Folder of the capture; it is only read; see beam help captures";
+
 struct ProcessArguments {
   std::string capture, project;
   ProjectFlags project_flags;
@@ -114,7 +116,7 @@ struct ProcessArguments {
 void addProcessCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("process", "Import a capture and run what is missing; resumes");
   auto a = std::make_shared<ProcessArguments>();
-  command->add_option("CAPTURE", a->capture, "Folder of the capture; it is only read")->required();
+  command->add_option("CAPTURE", a->capture, kCaptureHelp)->required();
   command->add_option("--out", a->project, "Project folder, Name.beam")->required()->type_name("PROJECT");
   addProjectFlags(*command, a->project_flags);
   addRunFlags(*command, a->run);
@@ -137,9 +139,7 @@ void addNewCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("new", "Make a project of a capture without running anything");
   auto a = std::make_shared<ProcessArguments>();
   command->add_option("PROJECT", a->project, "Project folder, Name.beam")->required();
-  command->add_option("--capture", a->capture, "Folder of the capture; it is only read")
-      ->required()
-      ->type_name("CAPTURE");
+  command->add_option("--capture", a->capture, kCaptureHelp)->required()->type_name("CAPTURE");
   addProjectFlags(*command, a->project_flags);
   command->callback([a, &context] {
     context.action = [a, &context] {

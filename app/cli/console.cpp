@@ -96,6 +96,11 @@ void Console::print(const std::string& text) {
   throw Error(Error::Kind::Storage, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
 
+void Console::tell(const std::string& words) {
+  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
+  print(terminal ? foldedToColumns(words, static_cast<std::size_t>(columnsOf(STDOUT_FILENO))) : words);
+}
+
 void Console::info(const std::string& text) {
   std::lock_guard lock(mutex_);
   if (!quiet_) line("", "", text);

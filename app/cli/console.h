@@ -34,6 +34,8 @@ class Console {
 
   // Standard output: what was asked for, also when quiet. Throws Error{Storage} when it does not take it.
   void print(const std::string& text);
+  // Likewise, words for a person: on a terminal they are folded at its width.
+  void tell(const std::string& words);
   void info(const std::string& line);     // standard error: what is going on
   void detail(const std::string& line);   // info that is told with --verbose alone
   void warning(const std::string& text);  // "warning: ..."; a text is shown once

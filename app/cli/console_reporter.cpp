@@ -21,6 +21,16 @@ std::string namesOf(const std::vector<StepFailed>& failed) {
   return names;
 }
 
+std::string failuresText(const JobFinished& e) {
+  const std::string names = namesOf(e.failed);
+  const auto failed = static_cast<int>(e.failed.size());
+  if (failed < e.frames)
+    return fmt::format("{} of {} failed ({}); the others are done", failed, countText(e.frames, "frame"),
+                       names);
+  return failed == 1 ? fmt::format("the frame failed ({})", names)
+                     : fmt::format("all {} failed ({})", countText(failed, "frame"), names);
+}
+
 }  // namespace
 
 void ConsoleReporter::report(const JobEvent& event) {
@@ -63,7 +73,7 @@ void ConsoleReporter::show(const JobWaiting& e) {
 void ConsoleReporter::show(const JobFinished& e) {
   console_.endProgress();
   tellReused();
-  for (const std::string& note : e.notes) answers_ ? console_.print(note) : console_.info(note);
+  for (const std::string& note : e.notes) answers_ ? console_.tell(note) : console_.info(note);
   switch (e.outcome) {
     case JobOutcome::Done:
       console_.info(e.computed == 0
@@ -74,8 +84,7 @@ void ConsoleReporter::show(const JobFinished& e) {
                                       countText(e.computed, "step"), e.reused));
       break;
     case JobOutcome::DoneWithFailures:
-      console_.error(fmt::format("{} failed ({}); the others are done", countText(e.failed.size(), "frame"),
-                                 namesOf(e.failed)));
+      console_.error(failuresText(e));
       break;
     case JobOutcome::Cancelled:
       console_.info("interrupted; the same command goes on after the last finished step");

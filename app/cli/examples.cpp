@@ -73,6 +73,7 @@ const Examples& table() {
         {"beam clean Take.beam", "remove results that no setting in force needs"}}},
       {"beam help",
        {{"beam help run", "the help of a command, as beam run --help"},
+        {"beam help captures", "a topic: what the folder of a capture looks like"},
         {"beam help files", "a topic: what render and export write, and what a project holds"},
         {"beam help --json", "every command and flag for a program"}}},
       {"beam version",

@@ -136,14 +136,21 @@ std::string helpText(const CLI::App& command) {
   return page.text();
 }
 
-std::string helpJson(const CLI::App& app) {
-  Json j = {{"commands", Json::array({commandJson(app)})}, {"topics", Json::array()}};
-  for (const CLI::App* command : allCommandsOf(app)) j["commands"].push_back(commandJson(*command));
+std::string helpJson(const CLI::App& app, const std::vector<std::string>& words) {
+  const auto wanted = [&](const std::string& name) {
+    return words.empty() || std::find(words.begin(), words.end(), name) != words.end();
+  };
+  Json j = {{"commands", Json::array()}, {"topics", Json::array()}};
+  if (words.empty()) j["commands"].push_back(commandJson(app));
+  for (const CLI::App* command : allCommandsOf(app))
+    if (wanted(command->get_name())) j["commands"].push_back(commandJson(*command));
   for (const HelpTopic& topic : helpTopics())
-    j["topics"].push_back({{"topic", topic.name}, {"summary", topic.summary}});
+    if (wanted(topic.name))
+      j["topics"].push_back({{"topic", topic.name}, {"summary", topic.summary}, {"text", topic.text()}});
   for (const ExitCodeInfo& e : exitCodes())
     j["exit_codes"].push_back({{"code", e.code}, {"meaning", e.meaning}, {"advice", e.advice}});
   for (const JsonAnswer& answer : jsonAnswers()) {
+    if (!wanted(answer.command.substr(0, answer.command.find(' ')))) continue;
     Json keys = Json::object();
     for (const JsonKey& key : answer.keys) keys[key.path] = key.meaning;
     j["json"][answer.command] = std::move(keys);

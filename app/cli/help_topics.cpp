@@ -90,20 +90,65 @@ std::string filesText() {
                     format.help, format.extension));
   page.heading("A project, Name.beam");
   page.row("project.json", "the capture's place, the settings that differ from the preset, looks");
-  page.row("history/", "the last versions of project.json");
-  page.row("evaluation*.json",
-           "scores of the last beam evaluate, for beam report and the window; evaluation_frames.json also "
-           "frame by frame");
+  page.row("history/", "the last versions of project.json, twenty of them");
   page.row("results/",
            "one folder a result: plain PLY, EXR, PNG and JSON that other programs open, and "
            "result.json, which says what it was made of");
   page.row("failures/", "why a frame failed, for beam status");
-  page.row("logs/", "what the window told, a file a session");
+  page.row("evaluation.json", "and evaluation_frames.json: what beam evaluate found last");
+  page.row("logs/",
+           "a text file a run, named by its beginning in UTC and its process, such as "
+           "20260314T081500Z-4711.log: every step, warning and error with its time, of beam and of the "
+           "window alike; the last twenty are kept");
   page.row("leases/, LOCK", "who computes what; processes may share a project");
   page.heading("Files that are there already");
   page.paragraph(
       "A file is replaced where the same command wrote it; another is refused with exit code 2 "
       "unless --force is given.",
+      2);
+  return page.text();
+}
+
+std::string capturesText() {
+  HelpPage page(20);
+  page.paragraph(
+      "A capture is a folder of photographs of one subject, taken by calibrated cameras that stand still. It "
+      "is only read. beam check FOLDER says what is understood of it, beam sample FOLDER makes a small one "
+      "to look at.");
+  page.heading("What lies in it");
+  page.row("dataset.json", "or transforms.json or sparse/0/: the cameras, see below");
+  page.row("images/", "a folder a camera, a file a frame: images/cam00/000000.png; PNG or JPEG");
+  page.row("masks/",
+           "if any, as the images: masks/cam00/000000.png, white where the subject is. mask/, mattes/ and "
+           "alpha/ are read too, and 000000_mask.png or 000000_alpha.png beside a picture");
+  page.row("environment.exr", "or environment.hdr, if any: the light, see beam help environment");
+  page.row("points3D.ply", "if any: points of the subject, to start from");
+  page.blank();
+  page.paragraph(
+      "Without masks, the alpha channel of the pictures counts, or an even black or white ground up to their "
+      "borders; else nothing is cut out. Without a panorama a run stops after Surface. Files of one frame "
+      "have the same name in every camera; a picture that is missing is left out with a warning.",
+      2);
+  page.heading("The cameras: the first of these that is there");
+  page.row(
+      "dataset.json",
+      "\"cameras\": by name width, height, fx, fy, cx, cy, R and t (camera from world, OpenCV axes), and "
+      "\"split\": \"train\" or \"test\". If known \"fps\" and \"world\": {\"up\": \"+Z\", \"unit\": "
+      "\"m\"}");
+  page.row("transforms.json",
+           "as of NeRF, instant-ngp and nerfstudio: \"frames\" with \"file_path\", if any \"mask_path\", and "
+           "\"transform_matrix\" (world from camera, OpenGL axes); fl_x or camera_angle_x; test_filenames "
+           "and ply_file_path if any");
+  page.row("sparse/0/",
+           "a COLMAP model, binary or text, of SIMPLE_PINHOLE or PINHOLE cameras; also in sparse/, "
+           "colmap/sparse/0/ or the folder itself. An image is named camera/frame.png, or camera alone for a "
+           "folder of frames, or is a file alone: one frame");
+  page.blank();
+  page.paragraph(
+      "At least two training cameras are needed, without lens distortion: undistort the pictures first. "
+      "Every picture has the size that its camera is calibrated for. Axes come from the description or the "
+      "cameras, else from --up; the unit from the description or the subject's height, else from --unit. "
+      "--hold-out keeps cameras for testing.",
       2);
   return page.text();
 }
@@ -254,6 +299,7 @@ std::string jsonText() {
 
 const std::vector<HelpTopic>& helpTopics() {
   static const std::vector<HelpTopic> all = {
+      {"captures", "what the folder of a capture looks like, and what is read", capturesText},
       {"files", "what render and export write, and what a project holds", filesText},
       {"frames", "how frames and cameras are chosen; takes", framesText},
       {"settings", "--set, --preset, and where values come from", settingsText},

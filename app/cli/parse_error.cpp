@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "app/cli/flag_facts.h"
+#include "app/cli/typed_words.h"
 #include "core/base/fields.h"
 
 namespace beam {
@@ -24,12 +25,17 @@ std::string noSuchFlag(const CLI::App& command, const std::string& word) {
     for (const FlagFacts& f : flags) known.insert(known.end(), f.names.begin(), f.names.end());
   }
   const std::string flag = word.substr(0, word.find('='));
+  if (std::find(known.begin(), known.end(), flag) != known.end())
+    return fmt::format("\"{}\" stands behind \"--\", where nothing is taken for a flag: move it before that.",
+                       flag);
   const std::optional<std::string> similar = similarName(flag, known);
   return fmt::format("there is no flag \"{}\"{}", flag,
                      similar ? fmt::format("; did you mean \"{}\"?", *similar) : std::string("."));
 }
 
 std::string noSuchCommand(const CLI::App& app, const std::string& word) {
+  if (const std::optional<std::string> meant = meantBy(word); meant && !app.get_parent())
+    return fmt::format("there is no command \"{}\"; did you mean {}?", word, *meant);
   std::vector<std::string> known;
   for (const CLI::App* command : commandsOf(app)) known.push_back(command->get_name());
   const std::string list = fmt::format("there are {}", fmt::join(known, ", "));

@@ -12,6 +12,7 @@
 #include "app/cli/json_reporter.h"
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
+#include "core/base/log.h"
 #include "core/base/word_list.h"
 #include "core/io/image_file.h"
 #include "core/pipeline/machine_times.h"
@@ -61,7 +62,9 @@ void requirePanorama(const std::filesystem::path& file) {
     throw Error(Error::Kind::Data, fmt::format("--environment expects a panorama (.exr, .hdr); \"{}\" {}",
                                                file.string(), kindInWords(file)));
   }
-  makeEnvironment(readRadiance(file));
+  const Environment light = makeEnvironment(readRadiance(file));
+  if (const std::string doubt = shapeDoubt(light.radiance, file.string()); !doubt.empty())
+    logWarning("{}", doubt);
 }
 
 // Of this machine in any project, and what the records of this one say.
@@ -74,7 +77,7 @@ StepTimes knownTimes(const Project& project) {
 int tellPlan(const Project& project, const RunRequest& request, const RunFlags& flags,
              const std::string& command, Console& console) {
   const RunEstimate estimate = estimateRun(project, request, knownTimes(project));
-  console.print(flags.json ? signedBy(command, toJson(estimate)) : toText(estimate));
+  flags.json ? console.print(signedBy(command, toJson(estimate))) : console.tell(toText(estimate));
   return 0;
 }
 

@@ -83,31 +83,42 @@ std::string cutToColumns(std::string_view text, std::size_t columns) {
   return std::string(text.substr(0, kept)).append(kCut);
 }
 
-std::string foldedToColumns(std::string_view text, std::size_t columns) {
-  std::string out;
-  std::size_t used = 0;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of(" \n"), text.size());
-    const std::string_view word = text.substr(0, end);
+namespace {
+
+void addFolded(std::string_view line, std::size_t columns, std::string& out) {
+  const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+  const std::string hang(std::min(indent + 2, columns / 2), ' ');
+  std::size_t used = indent;
+  out.append(line.substr(0, indent));
+  line.remove_prefix(indent);
+  for (bool first = true; !line.empty(); first = false) {
+    const std::size_t end = std::min(line.find(' '), line.size());
+    const std::string_view word = line.substr(0, end);
     const std::size_t width = columnsOf(word);
-    const bool first = out.empty() || out.back() == '\n';
     if (!first && used + 1 + width > columns) {
-      out += "\n  ";
-      used = 2;
+      out.append("\n").append(hang);
+      used = hang.size();
     } else if (!first) {
       out += ' ';
       ++used;
     }
     out += word;
     used += width;
-    if (end == text.size()) break;
-    if (text[end] == '\n') {
-      out += '\n';
-      used = 0;
-    }
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+}
+
+}  // namespace
+
+std::string foldedToColumns(std::string_view text, std::size_t columns) {
+  std::string out;
+  while (true) {
+    const std::size_t end = text.find('\n');
+    addFolded(text.substr(0, end), columns, out);
+    if (end == std::string_view::npos) return out;
+    out += '\n';
     text.remove_prefix(end + 1);
   }
-  return out;
 }
 
 }  // namespace beam

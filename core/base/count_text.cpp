@@ -26,10 +26,4 @@ std::string countText(std::int64_t n, std::string_view one, std::string_view man
   return fmt::format("{} {}", grouped(n), nounText(n, one, many));
 }
 
-std::string namesText(const std::vector<std::string>& names, std::size_t most) {
-  if (names.size() <= most) return fmt::format("{}", fmt::join(names, ", "));
-  const std::vector<std::string> named(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(most));
-  return fmt::format("{} and {} more", fmt::join(named, ", "), names.size() - most);
-}
-
 }  // namespace beam

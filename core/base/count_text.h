@@ -2,12 +2,10 @@
 // A number with its noun, as a person says it: the one place that knows of one and many.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 namespace beam {
 
@@ -16,9 +14,6 @@ namespace beam {
 std::string countText(std::int64_t n, std::string_view one, std::string_view many = {});
 // The noun alone, before names: nounText(names.size(), "frame").
 std::string nounText(std::int64_t n, std::string_view one, std::string_view many = {});
-
-// "a, b, c, d and 3 more": one line of any number of names.
-std::string namesText(const std::vector<std::string>& names, std::size_t most = 4);
 
 // For counts of containers.
 template <class Integer>

@@ -152,6 +152,17 @@ std::optional<std::string> similarName(std::string_view name, const std::vector<
   return nearest;
 }
 
+std::string knownNames(std::string_view many, std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kFew = 12, kNearest = 5;
+  if (known.size() <= kFew) return fmt::format("the {} are {}", many, fmt::join(known, ", "));
+  std::vector<std::pair<std::size_t, std::string>> by_distance;
+  for (const std::string& k : known) by_distance.emplace_back(editDistance(name, k), k);
+  std::sort(by_distance.begin(), by_distance.end());
+  std::vector<std::string> nearest;
+  for (std::size_t i = 0; i < kNearest; ++i) nearest.push_back(by_distance[i].second);
+  return fmt::format("the {} nearest to it are {} (of {})", many, fmt::join(nearest, ", "), known.size());
+}
+
 std::string noSuchName(std::string_view kind, std::string_view name, const std::vector<std::string>& known,
                        std::string_view where) {
   const std::optional<std::string> similar = similarName(name, known);

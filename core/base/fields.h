@@ -101,6 +101,9 @@ std::string nearestName(std::string_view name, const std::vector<std::string>& k
 // Likewise, where it may be what was meant: at most max(1, a third of the letters) apart.
 std::optional<std::string> similarName(std::string_view name, const std::vector<std::string>& known);
 
+// "the cameras are cam00, cam01"; of many "the cameras nearest to it are cam00, cam01 (of 60)".
+std::string knownNames(std::string_view many, std::string_view name, const std::vector<std::string>& known);
+
 // "there is no camera \"cam0\"; did you mean \"cam00\"?", and where none is similar
 // "there is no camera \"door\"; " and `where`, which says where the known ones are found.
 std::string noSuchName(std::string_view kind, std::string_view name, const std::vector<std::string>& known,

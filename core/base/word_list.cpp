@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/word_list.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 
@@ -21,6 +23,12 @@ std::vector<std::string> splitAtCommas(std::string_view text) {
     if (comma == std::string_view::npos) return words;
     text.remove_prefix(comma + 1);
   }
+}
+
+std::string shortList(const std::vector<std::string>& names, std::size_t most) {
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(names.size(), most));
+  const std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + shown, ", "));
+  return names.size() <= most ? text : fmt::format("{} and {} more", text, names.size() - most);
 }
 
 std::string lowerCase(std::string_view word) {

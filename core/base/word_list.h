@@ -2,6 +2,7 @@
 // Lists of words as people type them.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,8 @@ namespace beam {
 std::string_view trimmed(std::string_view text);
 // What stands between the commas, trimmed; none that are empty.
 std::vector<std::string> splitAtCommas(std::string_view text);
+// "a, b, c and 12 more".
+std::string shortList(const std::vector<std::string>& names, std::size_t most = 5);
 // Of A to Z alone.
 std::string lowerCase(std::string_view word);
 

@@ -10,33 +10,35 @@
 namespace beam {
 namespace {
 
-constexpr int kBorder = 10;  // a window's pixels less one
-constexpr int kBand = 64;    // rows of windows that are in memory at a time
+constexpr int kBorder = kSsimWindow_px - 1;
+constexpr int kBand = 64;  // rows of windows that are in memory at a time
 
-std::array<double, 11> gaussianWindow() {
-  std::array<double, 11> k{};
+using Window = std::array<double, kSsimWindow_px>;
+
+Window gaussianWindow() {
+  Window k{};
   double sum = 0;
-  for (int i = 0; i < 11; ++i) sum += k[i] = std::exp(-(i - 5) * (i - 5) / 4.5);
+  for (int i = 0; i < kSsimWindow_px; ++i) sum += k[i] = std::exp(-(i - 5) * (i - 5) / 4.5);
   for (double& v : k) v /= sum;
   return k;
 }
 
-// Filters a w x h field and keeps the windows that lie inside: (w - 10) x (h - 10).
+// Filters a w x h field and keeps the windows that lie inside: (w - kBorder) x (h - kBorder).
 std::vector<double> blurInside(const std::vector<double>& in, int w, int h) {
-  static const std::array<double, 11> k = gaussianWindow();
-  const int ow = w - 10, oh = h - 10;
+  static const Window k = gaussianWindow();
+  const int ow = w - kBorder, oh = h - kBorder;
   std::vector<double> rows(static_cast<std::size_t>(ow) * h), out(static_cast<std::size_t>(ow) * oh);
   for (int y = 0; y < h; ++y) {
     for (int x = 0; x < ow; ++x) {
       double s = 0;
-      for (int i = 0; i < 11; ++i) s += k[i] * in[static_cast<std::size_t>(y) * w + x + i];
+      for (int i = 0; i < kSsimWindow_px; ++i) s += k[i] * in[static_cast<std::size_t>(y) * w + x + i];
       rows[static_cast<std::size_t>(y) * ow + x] = s;
     }
   }
   for (int y = 0; y < oh; ++y) {
     for (int x = 0; x < ow; ++x) {
       double s = 0;
-      for (int i = 0; i < 11; ++i) s += k[i] * rows[static_cast<std::size_t>(y + i) * ow + x];
+      for (int i = 0; i < kSsimWindow_px; ++i) s += k[i] * rows[static_cast<std::size_t>(y + i) * ow + x];
       out[static_cast<std::size_t>(y) * ow + x] = s;
     }
   }
@@ -73,6 +75,13 @@ void addSsim(const Planes& p, const Planes& q, int channel, PixelRect r, double&
   }
 }
 
+// [begin, end) with at least a window's pixels of [0, limit), as many before it as behind.
+void growToWindow(int& begin, int& end, int limit) {
+  const int size = std::min(std::max(end - begin, kSsimWindow_px), limit);
+  begin = std::clamp(begin - (size - (end - begin)) / 2, 0, limit - size);
+  end = begin + size;
+}
+
 }  // namespace
 
 double psnr(const Planes& a, const Planes& b, PixelRect rect) {
@@ -87,9 +96,10 @@ double psnr(const Planes& a, const Planes& b, PixelRect rect) {
   return mse <= 0 ? 100.0 : std::min(100.0, -10 * std::log10(mse));
 }
 
-double ssim(const Planes& a, const Planes& b, PixelRect rect, const Progress& progress) {
-  const int rows = rect.y1 - rect.y0 - kBorder;
-  const double windows = static_cast<double>(rows) * (rect.x1 - rect.x0 - kBorder);
+std::optional<double> ssim(const Planes& a, const Planes& b, PixelRect rect, const Progress& progress) {
+  const int rows = rect.y1 - rect.y0 - kBorder, columns = rect.x1 - rect.x0 - kBorder;
+  if (rows < 1 || columns < 1) return std::nullopt;
+  const double windows = static_cast<double>(rows) * columns;
   double mean = 0;
   for (int c = 0; c < a.channels; ++c) {
     double sum = 0;
@@ -112,10 +122,8 @@ PixelRect maskBounds(const Image<std::uint8_t>& mask) {
   }
   if (r.x1 <= r.x0)
     throw Error(Error::Kind::Data, "the ground-truth mask is empty: there is nothing to score");
-  r.x0 = std::max(0, std::min(r.x0, mask.width - 11));
-  r.y0 = std::max(0, std::min(r.y0, mask.height - 11));
-  r.x1 = std::max(r.x1, 11);
-  r.y1 = std::max(r.y1, 11);
+  growToWindow(r.x0, r.x1, mask.width);
+  growToWindow(r.y0, r.y1, mask.height);
   return r;
 }
 

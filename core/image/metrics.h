@@ -3,6 +3,8 @@
 // precision.
 #pragma once
 
+#include <optional>
+
 #include "core/base/progress.h"
 #include "core/image/image.h"
 
@@ -15,13 +17,16 @@ struct PixelRect {
 // 10 log10(1 / mean squared difference) over all channels and pixels of the rectangle; 100 when equal.
 double psnr(const Planes& a, const Planes& b, PixelRect rect);
 
-// Wang et al. 2004: 11x11 Gaussian window, sigma 1.5, K = (0.01, 0.03), windows fully inside the rectangle,
-// mean over channels. The rectangle is at least 11 pixels wide and high. Of no meaning when a stop is
-// requested.
-double ssim(const Planes& a, const Planes& b, PixelRect rect, const Progress& progress = Progress());
+inline constexpr int kSsimWindow_px = 11;
 
-// Bounding box of mask > 0, grown to at least 11 pixels a side inside the picture (evaluate.py's rule).
-// Throws Error{Data} for an empty mask.
+// Wang et al. 2004: 11x11 Gaussian window, sigma 1.5, K = (0.01, 0.03), windows fully inside the rectangle,
+// mean over channels; none where the rectangle is narrower or lower than a window. Of no meaning when a stop
+// is requested.
+std::optional<double> ssim(const Planes& a, const Planes& b, PixelRect rect,
+                           const Progress& progress = Progress());
+
+// Bounding box of mask > 0, grown on both sides to a window of ssim(), or to the picture where that is
+// smaller. Throws Error{Data} for an empty mask.
 PixelRect maskBounds(const Image<std::uint8_t>& mask);
 
 }  // namespace beam

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
+#include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/base/parallel.h"
+#include "core/base/word_list.h"
 #include "core/io/capture_pictures.h"
 #include "core/io/image_file.h"
 #include "core/io/splat_ply.h"
@@ -30,6 +33,14 @@ PanoramaCheck checkPanorama(const fs::path& path, std::vector<std::string>& warn
   const std::unique_ptr<const int, void (*)(const int*)> remove(&token,
                                                                 [](const int* t) { removeLogSink(*t); });
   const Environment e = makeEnvironment(readRadiance(path));
+  if (isGrayExr(path)) {
+    warnings.push_back(fmt::format(
+        "\"{}\": expected the channels R, G and B of a panorama, found Y alone: it is read as grey light; a "
+        "depth map or another map of one channel is no light",
+        path.string()));
+  }
+  if (const std::string doubt = shapeDoubt(e.radiance, path.string()); !doubt.empty())
+    warnings.push_back(doubt);
   return {e.radiance.width, e.radiance.height, meanRadiance(e), brightestDirection(e)};
 }
 
@@ -40,19 +51,50 @@ double coverageOf(const Image<std::uint8_t>& mask) {
   return sum / static_cast<double>(mask.pixels.size());
 }
 
-// Decodes the first picture that can be used, for its mask; looks at the others without decoding them: whole,
-// and of the calibrated size.
+// A lens cap and the noise that compression leaves of it differ less.
+bool isOneColor(const Image<u8vec3>& photo) {
+  constexpr int kAlike = 4;
+  u8vec3 low(255), high(0);
+  for (const u8vec3& p : photo.pixels) low = glm::min(low, p), high = glm::max(high, p);
+  const ivec3 spread = ivec3(high) - ivec3(low);
+  return std::max({spread.x, spread.y, spread.z}) <= kAlike;
+}
+
+// More bytes hold more than one colour: a PNG of one shrinks to a thousandth of its pixels' bytes, a JPEG to
+// two bytes a block of 64; profiles and thumbnails come on top. A PNG that is stored and not compressed is
+// missed.
+bool mayBeOneColor(const fs::path& file, ImageSize size) {
+  constexpr double kOverhead = 1 << 16, kPerPixel = 1.0 / 16;
+  std::error_code failed;
+  const std::uintmax_t bytes = fs::file_size(file, failed);
+  return !failed && static_cast<double>(bytes) <= kOverhead + kPerPixel * size.width * size.height;
+}
+
+void warnOfOneColor(const std::string& camera, const std::vector<std::string>& frames,
+                    std::vector<std::string>& warnings) {
+  if (frames.empty()) return;
+  warnings.push_back(
+      fmt::format("camera {}, {} {}: expected {}, found one colour all over: a lens cap, a lost feed or a "
+                  "damaged file? It "
+                  "would be learned as it is: remove {} from the capture",
+                  camera, nounText(frames.size(), "frame"), shortList(frames),
+                  frames.size() == 1 ? "a photograph" : "photographs", frames.size() == 1 ? "it" : "them"));
+}
+
+// Decodes the first picture that can be used, for its mask, and those that may show nothing; looks at the
+// others without decoding them: whole, and of the calibrated size.
 CameraCheck checkCamera(const CaptureSet& set, std::size_t view, CameraCheck c,
                         std::vector<std::string>& warnings, const Progress& progress) {
   const View& v = set.views[view];
   const ViewIndex index{static_cast<std::int32_t>(view)};
+  std::vector<std::string> one_color;
   for (std::size_t f = 0; f < set.frames.size(); ++f) {
     const FrameIndex frame{static_cast<std::int32_t>(f)};
     if (progress.stopRequested()) return c;
     if (!set.source->has(index, frame)) continue;
     try {
       if (c.frames == 0) {
-        set.source->photo(index, frame);
+        if (isOneColor(set.source->photo(index, frame))) one_color.push_back(set.frames[f]);
         c.mask_coverage = coverageOf(set.source->mask(index, frame));
         if (c.mask_coverage == 0) {
           warnings.push_back(fmt::format("camera {}, frame {}: the mask is empty", v.name, set.frames[f]));
@@ -62,6 +104,8 @@ CameraCheck checkCamera(const CaptureSet& set, std::size_t view, CameraCheck c,
         for (std::size_t i = 0; i < files.size(); ++i) {
           const ImageSize s = checkImageFile(files[i]);
           requireCalibratedSize(v, files[i], {s.width, s.height}, i == 0 ? "picture" : "mask");
+          if (i == 0 && mayBeOneColor(files[i], s) && isOneColor(readPhoto(files[i])))
+            one_color.push_back(set.frames[f]);
         }
       }
       ++c.frames;
@@ -70,7 +114,64 @@ CameraCheck checkCamera(const CaptureSet& set, std::size_t view, CameraCheck c,
           fmt::format("{}; camera {}, frame {} cannot be used", e.what(), v.name, set.frames[f]));
     }
   }
+  warnOfOneColor(v.name, one_color, warnings);
   return c;
+}
+
+// What a person takes for a picture and no reader of photographs does.
+bool isForeignPicture(const fs::path& file) {
+  static const std::set<std::string> kKinds = {".exr",  ".hdr", ".tif", ".tiff", ".bmp", ".webp", ".avif",
+                                               ".heic", ".jxl", ".jp2", ".dng",  ".cr2", ".cr3",  ".nef",
+                                               ".arw",  ".raw", ".mp4", ".mov",  ".mkv", ".avi"};
+  return kKinds.contains(lowerCase(file.extension().string()));
+}
+
+// Folders of photographs that hold other pictures too. The capture's own folder has the panorama.
+void warnOfForeignPictures(const CaptureSet& set, const fs::path& capture,
+                           std::vector<std::string>& warnings) {
+  std::set<fs::path> folders;
+  for (std::size_t v = 0; v < set.views.size(); ++v) {
+    for (std::size_t f = 0; f < set.frames.size(); ++f) {
+      const ViewIndex view{static_cast<std::int32_t>(v)};
+      const FrameIndex frame{static_cast<std::int32_t>(f)};
+      if (set.source->has(view, frame))
+        folders.insert(fs::path(set.source->files(view, frame).front()).parent_path());
+    }
+  }
+  folders.erase(capture.lexically_normal());
+  for (const fs::path& folder : folders) {
+    std::vector<std::string> found;
+    std::error_code failed;
+    for (const auto& entry : fs::directory_iterator(folder, failed))
+      if (isForeignPicture(entry.path())) found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    if (found.empty()) continue;
+    warnings.push_back(
+        fmt::format("\"{}\": expected photographs as PNG or JPEG, found also {}, which {} not used",
+                    folder.string(), shortList(found), found.size() == 1 ? "is" : "are"));
+  }
+}
+
+// The photographs' light, or what is missing of it.
+void checkLight(const CaptureSet& set, CheckReport& r) {
+  if (set.environment_file) {
+    try {
+      r.panorama = checkPanorama(*set.environment_file, r.warnings);
+    } catch (const Error& e) {
+      r.warnings.emplace_back(e.what());
+    }
+    return;
+  }
+  constexpr const char* kNoLight = "the run stops after Surface";
+  for (const char* name : {"environment.png", "environment.jpg", "environment.jpeg"}) {
+    std::error_code failed;
+    if (!fs::exists(fs::path(r.path) / name, failed)) continue;
+    return r.warnings.push_back(
+        fmt::format("\"{}\" is not used: expected a panorama with the true brightness of lamps "
+                    "(environment.exr or .hdr), found one of 8 bits, in which they are clipped; {}",
+                    (fs::path(r.path) / name).string(), kNoLight));
+  }
+  r.warnings.push_back(fmt::format("no panorama (environment.exr or .hdr): {}", kNoLight));
 }
 
 SplatCheck checkSplats(const fs::path& path) {
@@ -129,15 +230,20 @@ void checkPictures(const CaptureSet& set, CheckReport& r, Progress& progress) {
   for (const auto& w : warnings) r.warnings.insert(r.warnings.end(), w.begin(), w.end());
   if (set.masks == MaskKind::None)
     r.warnings.push_back("no masks: there will be no visual hull and no mask loss");
-  if (!set.environment_file) {
-    r.warnings.push_back("no panorama (environment.exr or .hdr): the run stops after Surface");
-  } else {
-    try {
-      r.panorama = checkPanorama(*set.environment_file, r.warnings);
-    } catch (const Error& e) {
-      r.warnings.emplace_back(e.what());
-    }
-  }
+  warnOfForeignPictures(set, r.path, r.warnings);
+  checkLight(set, r);
+}
+
+std::string refusalOf(const CheckReport& r) {
+  if (r.kind != "capture") return {};
+  constexpr std::ptrdiff_t kLeast = 2;
+  const std::ptrdiff_t usable = std::count_if(
+      r.cameras.begin(), r.cameras.end(), [](const CameraCheck& c) { return !c.held_out && c.frames > 0; });
+  if (usable >= kLeast) return {};
+  return fmt::format(
+      "\"{}\" cannot be processed: expected at least {} training cameras with pictures that can be used, "
+      "found {}",
+      r.path, kLeast, usable);
 }
 
 CheckReport checkPath(const fs::path& path, const ImportOptions& options, Progress* progress) {
@@ -150,7 +256,7 @@ CheckReport checkPath(const fs::path& path, const ImportOptions& options, Progre
   }
   CheckReport r;
   r.path = path.string();
-  if (path.extension() == ".ply") {
+  if (lowerCase(path.extension().string()) == ".ply") {
     r.kind = "splats";
     r.splats = checkSplats(path);
   } else {

@@ -44,6 +44,10 @@ struct CheckReport {
   std::vector<std::string> warnings;
 };
 
+// Says why nothing can be solved of a capture whose pictures were looked at: fewer than two training cameras
+// have a picture that can be used. Empty: something can.
+std::string refusalOf(const CheckReport& report);
+
 // Looks at every picture of the capture; damaged ones become warnings that name file, camera and frame.
 // Throws Error{Data} when nothing usable is there, Cancelled when `progress` was asked to stop.
 CheckReport checkPath(const std::filesystem::path& path, const ImportOptions& options = {},

@@ -10,6 +10,7 @@
 
 #include "core/base/count_text.h"
 #include "core/base/error.h"
+#include "core/base/fields.h"
 #include "core/base/log.h"
 #include "core/base/word_list.h"
 #include "core/io/capture_description.h"
@@ -33,7 +34,7 @@ CaptureDescription describedBy(const fs::path& folder) {
   if (auto d = readColmapModel(folder)) return *d;
   throw Error(Error::Kind::Data,
               fmt::format("\"{}\" is no capture: expected dataset.json, transforms.json or a COLMAP "
-                          "model in sparse/0, found none of them",
+                          "model in sparse/0, found none of them; beam help captures tells what each holds",
                           folder.string()));
 }
 
@@ -68,8 +69,11 @@ void holdOut(CaptureDescription& d, const std::vector<std::string>& wanted) {
         if (matchesName(w, c.name)) c.split = Split::Test;
       }
     } else {
+      std::vector<std::string> names;
+      for (const DescribedCamera& c : d.cameras) names.push_back(c.name);
       throw Error(Error::Kind::Usage,
-                  fmt::format("--hold-out {}: the capture has no camera of that name or like it", w));
+                  fmt::format("--hold-out {}: the capture has no camera of that name or like it; {}", w,
+                              knownNames("cameras", w, names)));
     }
   }
 }
@@ -131,14 +135,6 @@ std::vector<std::string> framesOf(const CaptureDescription& d) {
     });
   }
   return frames;
-}
-
-// "a, b, c and 12 more".
-std::string shortList(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 5;
-  const std::vector<std::string> first(names.begin(), names.begin() + std::min(names.size(), kShown));
-  const std::string text = fmt::format("{}", fmt::join(first, ", "));
-  return names.size() <= kShown ? text : fmt::format("{} and {} more", text, names.size() - kShown);
 }
 
 // One row of the table: the pictures and masks of a camera by frame.
@@ -226,10 +222,18 @@ void warnOfSeeds(const SubjectMeasure& subject, std::size_t count, const fs::pat
   }
 }
 
+void warnOfInvertedMasks(const fs::path& folder, std::vector<std::string>& warnings) {
+  warnings.push_back(fmt::format(
+      "\"{}\": the masks look inverted: expected white where the subject is, found white along the "
+      "borders of the pictures and black inside; invert them. The subject's size is not measured",
+      folder.string()));
+}
+
 // Where a turned capture lies, as it is found when a project is made.
 CapturePlacement foundPlacement(const CaptureSet& turned, const UnitHints& hints, const fs::path& folder,
                                 std::vector<std::string>& warnings) {
   const SubjectMeasure subject = measureSubject(turned);
+  if (subject.masks_look_inverted) warnOfInvertedMasks(folder, warnings);
   warnOfSeeds(subject, turned.seed_points.position_m.size(), folder, warnings);
   return placementOf(subject, hints, turned.up);
 }

@@ -226,12 +226,21 @@ Image<std::uint8_t> readAlpha(const std::filesystem::path& path) {
   return channelOf(m, 3);
 }
 
-Image<vec3> readRadiance(const std::filesystem::path& path) {
+bool isRadianceName(const std::filesystem::path& path) {
   const std::string extension = lowerCase(path.extension().string());
-  if (extension == ".hdr" || extension == ".pic") return readRadianceHdr(path);
-  if (extension != ".exr") bad(path, "expected a panorama as .exr or .hdr");
+  return extension == ".exr" || extension == ".hdr" || extension == ".pic";
+}
+
+bool isGrayExr(const std::filesystem::path& path) {
+  if (lowerCase(path.extension().string()) != ".exr") return false;
   const std::vector<std::string> stored = exrChannels(path);
-  const bool gray = stored == std::vector<std::string>{"Y"} || stored == std::vector<std::string>{"A", "Y"};
+  return stored == std::vector<std::string>{"Y"} || stored == std::vector<std::string>{"A", "Y"};
+}
+
+Image<vec3> readRadiance(const std::filesystem::path& path) {
+  if (!isRadianceName(path)) bad(path, "expected a panorama as .exr or .hdr");
+  if (lowerCase(path.extension().string()) != ".exr") return readRadianceHdr(path);
+  const bool gray = isGrayExr(path);
   const Planes p =
       readExr(path, gray ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"});
   Image<vec3> out(p.width, p.height, vec3(0), Encoding::Linear);

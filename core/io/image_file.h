@@ -32,6 +32,10 @@ Image<u8vec3> readPhoto(const std::filesystem::path& path);
 Image<std::uint8_t> readMask(const std::filesystem::path& path);
 Image<std::uint8_t> readAlpha(const std::filesystem::path& path);
 
+// Whether readRadiance takes a file of that name.
+bool isRadianceName(const std::filesystem::path& path);
+// Whether it is an .exr that has luminance alone.
+bool isGrayExr(const std::filesystem::path& path);
 // Linear RGB of an .exr or .hdr file; an .exr that has luminance alone is gray.
 Image<vec3> readRadiance(const std::filesystem::path& path);
 

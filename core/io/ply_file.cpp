@@ -8,6 +8,7 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -52,8 +53,13 @@ std::size_t sizeOfType(PlyType t) {
 
 class PlyReader {
  public:
-  PlyReader(const std::filesystem::path& path, std::size_t most_rows)
-      : path_(path), most_rows_(most_rows), bytes_(readTextFile(path, kMaxFile)) {}
+  PlyReader(const std::filesystem::path& path, std::size_t most_rows, std::string bytes)
+      : path_(path), most_rows_(most_rows), bytes_(std::move(bytes)) {}
+
+  std::vector<PlyElement> readHeader() {
+    header();
+    return std::move(elements_);
+  }
 
   std::vector<PlyElement> read() {
     header();
@@ -267,7 +273,19 @@ void requireRowsWithin(std::size_t rows, std::size_t most, const std::string& el
 }
 
 std::vector<PlyElement> readPly(const std::filesystem::path& path, std::size_t most_rows) {
-  return PlyReader(path, most_rows).read();
+  return PlyReader(path, most_rows, readTextFile(path, kMaxFile)).read();
+}
+
+std::vector<PlyElement> readPlyHeader(const std::filesystem::path& path) {
+  constexpr std::size_t kMostHeader = 1u << 20;
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed))
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected a PLY file", path.string()));
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(kMostHeader, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return PlyReader(path, kMostPlyRows, std::move(bytes)).readHeader();
 }
 
 std::string plyComments(const FileNotes& notes) {

@@ -47,6 +47,8 @@ void requireRowsWithin(std::size_t rows, std::size_t most, const std::string& el
 // Throws Error{Data} naming the file: no PLY, unknown type, fewer bytes than the counts need, or more rows
 // than `most_rows`.
 std::vector<PlyElement> readPly(const std::filesystem::path& path, std::size_t most_rows = kMostPlyRows);
+// Names, counts and properties alone, of a file that may be large; otherwise as above.
+std::vector<PlyElement> readPlyHeader(const std::filesystem::path& path);
 const PlyElement* findElement(const std::vector<PlyElement>& elements, const std::string& name);
 
 }  // namespace beam

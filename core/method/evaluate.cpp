@@ -115,6 +115,19 @@ PictureScore scorePicture(const Planes& prediction, const Planes& truth, const I
   return s;
 }
 
+PictureScore meanOf(std::span<const PictureScore> scores) {
+  PictureScore mean;
+  double sum = 0, with_ssim = 0;
+  for (const PictureScore& s : scores) {
+    mean.psnr += s.psnr, mean.psnr_mask += s.psnr_mask;
+    if (s.ssim) sum += *s.ssim, ++with_ssim;
+  }
+  const double n = static_cast<double>(std::max<std::size_t>(1, scores.size()));
+  mean.psnr /= n, mean.psnr_mask /= n;
+  if (with_ssim > 0) mean.ssim = sum / with_ssim;
+  return mean;
+}
+
 double normalErrorDeg(const Planes& prediction, const Planes& truth, const Image<std::uint8_t>& mask) {
   double sum = 0;
   std::size_t count = 0;

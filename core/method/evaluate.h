@@ -3,8 +3,8 @@
 // data sets' own evaluator: bounding box of the mask, sRGB-encoded colours, black background.
 #pragma once
 
-#include <map>
-#include <string>
+#include <optional>
+#include <span>
 
 #include "core/base/progress.h"
 #include "core/image/image.h"
@@ -13,8 +13,13 @@
 namespace beam {
 
 struct PictureScore {
-  double psnr = 0, ssim = 0, psnr_mask = 0;
+  double psnr = 0;
+  std::optional<double> ssim = {};  // none: the picture is smaller than a window of it
+  double psnr_mask = 0;
 };
+
+// Of ssim over those that have one.
+PictureScore meanOf(std::span<const PictureScore> scores);
 
 // Values in [0, 1] in the compared space; a mask is inside from kInside on. Of no meaning when a stop is
 // requested.

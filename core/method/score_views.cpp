@@ -131,15 +131,15 @@ std::vector<ViewScore> scoreViews(std::span<const FrameView> views, bool held_ou
 
 SplitScore meanOf(std::span<const ViewScore> scores, bool held_out) {
   SplitScore s;
+  std::vector<PictureScore> of_split;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     if (scores[i].held_out != held_out || scores[i].left_out) continue;
     const PictureScore& p = scores[i].score;
-    s.mean.psnr += p.psnr, s.mean.ssim += p.ssim, s.mean.psnr_mask += p.psnr_mask;
+    of_split.push_back(p);
     if (s.n == 0 || p.psnr < scores[s.worst].score.psnr) s.worst = i;
     ++s.n;
   }
-  const double n = static_cast<double>(std::max<std::size_t>(1, s.n));
-  s.mean.psnr /= n, s.mean.ssim /= n, s.mean.psnr_mask /= n;
+  s.mean = meanOf(of_split);
   return s;
 }
 

@@ -92,6 +92,8 @@ void Job::runAll(const RunRequest& request) {
   arrangeTakes(project_, request);
   const RunPlan plan = makeRunPlan(project_, request);
   finished_.notes = plan.notes;
+  finished_.frames = static_cast<int>(
+      std::count_if(plan.turns.begin(), plan.turns.end(), [](const Turn& turn) { return !turn.lead(); }));
   left_.know(request.times);
   for (const StepId& step : plan.project_steps) expect(step, std::nullopt);
   for (const Turn& turn : plan.turns) {

@@ -86,8 +86,9 @@ struct JobFinished {
   Error::Kind kind = Error::Kind::Bug;  // of a failed job
   std::string message;                  // of a failed job
   std::vector<StepFailed> failed;       // frames
-  std::vector<std::string> notes;       // what was left out and what it would need
-  int computed = 0, reused = 0;         // steps
+  int frames = 0;                  // that were to be done, without leads; 0: it ended before that was known
+  std::vector<std::string> notes;  // what was left out and what it would need
+  int computed = 0, reused = 0;    // steps
   double seconds = 0;
   bool at_rest = false;  // cancelled between two steps as asked (StopAfter); the last note says after which
 };

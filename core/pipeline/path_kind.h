@@ -12,6 +12,10 @@ namespace beam {
 // \"X\" --out Name.beam"; of a file and of any other folder what is known of it.
 std::string kindInWords(const std::filesystem::path& path);
 
+// Throws Error{Data} that says what it is instead where it is neither a folder nor a panorama nor splats, or
+// a project.
+void requireCheckable(const std::filesystem::path& path);
+
 // Throws Error{Data} that says what it is instead where it is no folder, or a project.
 void requireCaptureFolder(const std::filesystem::path& path);
 

@@ -32,6 +32,19 @@ std::string frameName(const Project& project, FrameIndex frame) {
   return project.capture().frames[static_cast<std::size_t>(frame.value)];
 }
 
+// Why a step is not for some frames of their takes; see applies().
+const char* whyNotNeeded(const StepInfo& step) {
+  switch (step.frames) {
+    case Frames::FirstOfTake:
+      return "built on the frame before";
+    case Frames::InTakes:
+      return "solved alone, in no take";
+    case Frames::Every:
+      break;
+  }
+  return "not for them";
+}
+
 // "done 000002, 000006; pending 8 more": the finished and failed by name, what is only pending as a count.
 std::string stepText(const Project& project, const StepId& id, const StepInfo& step) {
   if (!step.per_frame) return toText(project.state(id, FrameIndex{}));
@@ -41,13 +54,14 @@ std::string stepText(const Project& project, const StepId& id, const StepInfo& s
   }
   std::string text;
   for (const auto& [state, names] : by_state) {
-    const bool all = by_state.size() == 1;
-    const bool few_words = state == StepState::Pending || state == StepState::NotNeeded;
-    const bool counted = all || few_words || names.size() > 12;
+    const bool all = by_state.size() == 1, not_needed = state == StepState::NotNeeded;
+    const bool counted = all || state == StepState::Pending || not_needed || names.size() > 12;
+    std::string which =
+        counted ? countText(names.size(), "frame") : fmt::format("{}", fmt::join(names, ", "));
+    if (all) which = names.size() == 1 ? "the frame" : "all frames";
+    if (not_needed) which += fmt::format(": {}", whyNotNeeded(step));
     text += fmt::format("{}{} {}", text.empty() ? "" : "; ", toText(state),
-                        all       ? std::string(names.size() == 1 ? "(the frame)" : "(all frames)")
-                        : counted ? fmt::format("({})", countText(names.size(), "frame"))
-                                  : fmt::format("{}", fmt::join(names, ", ")));
+                        counted ? fmt::format("({})", which) : which);
   }
   return text;
 }

@@ -16,6 +16,11 @@
 namespace beam {
 namespace {
 
+// A frame that leads into a take has results of its own and of that take.
+void addOnce(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
 class Estimator {
  public:
   Estimator(const Project& project, const RunPlan& plan, const StepTimes& times)
@@ -37,7 +42,7 @@ class Estimator {
     if (project_.store().has(keyOf(ingredients))) return;
     ++out_.steps_missing, ++step.missing;
     if (info.per_frame)
-      step.frames.push_back(project_.capture().frames[static_cast<std::size_t>(frame.value)]);
+      addOnce(project_.capture().frames[static_cast<std::size_t>(frame.value)], step.frames);
     if (info.per_frame && owned) to_do_.insert(frame.value);
     const auto seconds = times_.guess(kindOf(ingredients), sizeOf(project_, id, ingredients.later));
     if (!seconds) {
@@ -78,7 +83,7 @@ std::string aboutText(double low, double high) {
 
 std::string timeText(const StepEstimate& step) {
   if (step.missing == 0) return "";
-  return step.measured ? aboutText(step.seconds_low, step.seconds_high) : "not known";
+  return step.measured ? aboutText(step.seconds_low, step.seconds_high) : "not known yet";
 }
 
 // "000002, 000006" of few; "000000 to 000007" of more.
@@ -92,13 +97,28 @@ std::string totalText(const RunEstimate& e) {
     return fmt::format("nothing to compute: {}{} there", e.steps_total == 1 ? "" : "all ",
                        countText(e.steps_total, "result is", "results are"));
   std::string text =
-      fmt::format("{} of {} to compute, in {} of {}", e.steps_missing, countText(e.steps_total, "result"),
+      fmt::format("{} of {} to compute, for {} of {}", e.steps_missing, countText(e.steps_total, "result"),
                   e.frames, countText(e.frames_total, "frame"));
-  text += e.measured
-              ? fmt::format(": {}, by what was measured here", aboutText(e.seconds_low, e.seconds_high))
-              : std::string("; how long it takes is known once its steps have run here");
-  if (e.leaves_take) text += "\na frame of a take is fitted apart from it";
-  return text;
+  return text + (e.measured ? fmt::format(": {}, as measured on this machine",
+                                          aboutText(e.seconds_low, e.seconds_high))
+                            : std::string("; the time is not known yet: each step is measured when it first "
+                                          "runs on this machine"));
+}
+
+// What of the table may puzzle.
+std::vector<std::string> remarksOf(const RunEstimate& e) {
+  std::vector<std::string> remarks;
+  const bool led = std::any_of(e.steps.begin(), e.steps.end(), [&](const StepEstimate& step) {
+    return step.per_frame && step.total > e.frames_total;
+  });
+  if (led)
+    remarks.emplace_back(
+        "more results than frames: a take begins with frames of the take before, which it solves for itself");
+  if (e.leaves_take)
+    remarks.emplace_back(
+        "a frame of a take is solved alone here, not from the frame before it: to keep it in its take, name "
+        "the take's first frames too");
+  return remarks;
 }
 
 }  // namespace
@@ -125,14 +145,15 @@ RunEstimate estimateRun(const Project& project, const RunRequest& request, const
 std::string toText(const RunEstimate& estimate) {
   std::size_t widest = 4;
   for (const StepEstimate& step : estimate.steps) widest = std::max(widest, step.step.text().size());
-  std::string text = fmt::format("{:<{}}  missing     of  {:<18}  frames\n", "step", widest, "time");
+  std::string text = fmt::format("{:<{}}    to do  of all  {:<18}  frames to do\n", "step", widest, "time");
   for (const StepEstimate& step : estimate.steps) {
     if (step.total == 0) continue;
-    std::string line = fmt::format("{:<{}}  {:>7}  {:>5}  {:<18}  {}", step.step.text(), widest, step.missing,
+    std::string line = fmt::format("{:<{}}  {:>7}  {:>6}  {:<18}  {}", step.step.text(), widest, step.missing,
                                    step.total, timeText(step), framesText(step));
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }
-  for (const std::string& note : estimate.notes) text += note + "\n";
+  for (const std::string& note : estimate.notes) text += fmt::format("note: {}\n", note);
+  for (const std::string& remark : remarksOf(estimate)) text += fmt::format("note: {}\n", remark);
   return text + totalText(estimate);
 }
 

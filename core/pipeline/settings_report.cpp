@@ -117,16 +117,21 @@ std::string presetsText(const Setting& setting) {
   return fmt::format("{}", fmt::join(told, ", "));
 }
 
+// "surface.cap = 400 (set; default 1000; ...)"; of no project, where nothing is in force,
+// "surface.cap: default 1000 (...)".
 std::string lineOf(const Setting& setting) {
-  const FieldValue& value = setting.in_force ? setting.in_force->value : setting.default_value;
+  const std::string initial = fmt::format("default {}", toText(setting.default_value));
+  std::string value = fmt::format(": {}", initial);
   std::vector<std::string> told;
-  if (setting.in_force) told.push_back(setting.in_force->from);
-  if (setting.in_force && setting.in_force->from != "default")
-    told.push_back(fmt::format("default {}", toText(setting.default_value)));
+  if (setting.in_force) {
+    value = fmt::format(" = {}", toText(setting.in_force->value));
+    told.push_back(setting.in_force->from);
+    if (setting.in_force->from != "default") told.push_back(initial);
+  }
   for (const std::string& more : {presetsText(setting), limitsText(setting.info)})
     if (!more.empty()) told.push_back(more);
   const std::string remarks = told.empty() ? "" : fmt::format(" ({})", fmt::join(told, "; "));
-  return fmt::format("  {} = {}{}\n      {}\n", setting.info.name, toText(value), remarks, setting.info.help);
+  return fmt::format("  {}{}{}\n      {}\n", setting.info.name, value, remarks, setting.info.help);
 }
 
 Json idsJson(const std::vector<StepId>& steps) {
@@ -173,7 +178,7 @@ std::string stagesText(const PipelineSetup& setup, const Project* project) {
                        project->document().preset, countText(project->document().settings.size(), "setting"));
   }
   for (const StageInfo& info : setup.stages.infos()) {
-    text += fmt::format("{}: {} {}\n", info.id, info.title, info.summary);
+    text += fmt::format("{}: {}. {}\n", info.id, info.title, info.summary);
     for (const StepInfo& step : info.steps) {
       text += fmt::format("  step {}.{}: {}{}\n", info.id, step.id, step.title,
                           step.source.empty() ? "" : " (" + step.source + ")");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/environment.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -57,6 +59,14 @@ vec3 lookUp(const Image<vec3>& r, vec2 uv) {
 
 vec3 radianceFrom(const Environment& e, vec3 direction) {
   return e.gain * lookUp(e.radiance, turned(direction, -e.yaw_rad));
+}
+
+std::string shapeDoubt(const Image<vec3>& radiance, const std::string& name) {
+  if (radiance.width == 2 * radiance.height) return {};
+  return fmt::format(
+      "\"{}\": expected a panorama twice as wide as high, found {} x {}: it is stretched over the whole "
+      "sphere",
+      name, radiance.width, radiance.height);
 }
 
 Environment makeEnvironment(Image<vec3> radiance) {

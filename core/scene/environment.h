@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "core/image/image.h"
 
@@ -27,6 +28,9 @@ inline vec3 lookUp(const Image<vec3>& panorama, vec3 direction) {
 
 // Radiance from `direction` (unit, pointing to the light), bilinear, yaw and gain applied.
 vec3 radianceFrom(const Environment& environment, vec3 direction);
+
+// What is wrong with the shape of a panorama called `name`; empty: it is twice as wide as high.
+std::string shapeDoubt(const Image<vec3>& radiance, const std::string& name);
 
 // Clears negative and non-finite texels (logged), throws Error{Data} when the panorama is empty.
 Environment makeEnvironment(Image<vec3> radiance);

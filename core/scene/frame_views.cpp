@@ -54,7 +54,7 @@ void judgeFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
   if (readable < 2 && split == Split::Train) {
     throw Error(
         Error::Kind::Data,
-        fmt::format("frame {}: expected at least 2 readable training pictures, found {}", name, readable));
+        fmt::format("expected at least 2 readable training pictures of frame {}, found {}", name, readable));
   }
 }
 

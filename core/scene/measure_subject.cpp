@@ -73,6 +73,24 @@ std::vector<FrameView> maskViews(const CaptureSet& capture, const Similarity3& t
   return {};
 }
 
+// A subject that fills its pictures leaves nothing black; one that is cut by a border is not white on all
+// four.
+bool looksInverted(const Image<std::uint8_t>& mask) {
+  constexpr double kBorder = 0.95, kHole = 0.005;  // shares: white of the border, black of the picture
+  std::size_t border = 0, white = 0, black = 0;
+  for (int y = 0; y < mask.height; ++y) {
+    for (int x = 0; x < mask.width; ++x) {
+      const bool inside = mask(x, y) >= kInside;
+      black += !inside;
+      if (x != 0 && y != 0 && x + 1 != mask.width && y + 1 != mask.height) continue;
+      ++border;
+      white += inside;
+    }
+  }
+  return static_cast<double>(white) >= kBorder * static_cast<double>(border) &&
+         static_cast<double>(black) >= kHole * static_cast<double>(mask.pixels.size());
+}
+
 // The cells that half of the views see at all: what two alone see, nobody else could carve.
 std::vector<VisualHull::Cell> bodyOf(const VisualHull& hull, std::size_t views) {
   VisualHull::Cells found;
@@ -153,6 +171,10 @@ SubjectMeasure measureSubject(const CaptureSet& capture) {
   const Similarity3 to_hull{dmat3(1.0), scale, -scale * measure.focus->point};
   const std::vector<FrameView> views = maskViews(capture, to_hull);
   if (views.empty()) return measure;
+  const auto inverted =
+      std::count_if(views.begin(), views.end(), [](const FrameView& v) { return looksInverted(v.mask); });
+  measure.masks_look_inverted = 2 * static_cast<std::size_t>(inverted) > views.size();
+  if (measure.masks_look_inverted) return measure;
   const VisualHull hull(views);
   const std::optional<SubjectBox> box = boxOf(hull, views.size());
   if (!box) return measure;

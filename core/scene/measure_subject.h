@@ -21,9 +21,11 @@ struct SeedFit {
 };
 
 struct SubjectMeasure {
-  std::optional<SubjectBox> subject;  // none without masks, or where they leave no body
+  std::optional<SubjectBox> subject;  // none without masks, or where they leave no body or are inverted
   std::optional<RigFocus> focus;      // of the training cameras
   std::optional<SeedFit> seeds;       // none without a hull or points
+  // White all along the borders and black inside, in most of the pictures: the background was painted.
+  bool masks_look_inverted = false;
 };
 
 // Of the first frame in which two training cameras have masks; a picture that cannot be read is passed over.

@@ -20,12 +20,30 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kScoresFile = "scores.json";
 constexpr const char* kThumbsFile = "thumbs.png";
 
+const char* splitOf(const ViewScore& s) { return s.left_out ? "left_out" : s.held_out ? "test" : "train"; }
+
+void put(const PictureScore& score, Json& j) {
+  j["psnr"] = score.psnr;
+  if (score.ssim) j["ssim"] = *score.ssim;
+  j["psnr_mask"] = score.psnr_mask;
+}
+
 Json toJson(const SplitScore& split, const std::vector<ViewScore>& scores) {
-  return {{"psnr", split.mean.psnr},
-          {"ssim", split.mean.ssim},
-          {"psnr_mask", split.mean.psnr_mask},
-          {"cameras", split.n},
-          {"worst", scores[split.worst].camera}};
+  Json j;
+  put(split.mean, j);
+  j["cameras"] = split.n;
+  j["worst"] = scores[split.worst].camera;
+  return j;
+}
+
+Json toJson(const ViewScore& s) {
+  Json j = {{"camera", s.camera}, {"split", splitOf(s)}};
+  put(s.score, j);
+  j["photo_luma"] = s.photo_luma;
+  j["render_luma"] = s.render_luma;
+  j["photo_sharpness"] = s.photo_sharpness;
+  j["render_sharpness"] = s.render_sharpness;
+  return j;
 }
 
 void paste(const Image<std::uint8_t>& thumb, int x0, int y0, Image<std::uint8_t>& sheet) {
@@ -42,15 +60,14 @@ Image<std::uint8_t> cut(const Image<std::uint8_t>& sheet, int x0, int y0) {
   return thumb;
 }
 
-const char* splitOf(const ViewScore& s) { return s.left_out ? "left_out" : s.held_out ? "test" : "train"; }
-
 ViewScore scoreOf(const Json& j) {
   ViewScore s;
   s.camera = j.at("camera").get<std::string>();
   const auto split = j.at("split").get<std::string>();
   s.held_out = split == "test";
   s.left_out = split == "left_out";
-  s.score = {j.at("psnr").get<double>(), j.at("ssim").get<double>(), j.at("psnr_mask").get<double>()};
+  s.score = {.psnr = j.at("psnr").get<double>(), .psnr_mask = j.at("psnr_mask").get<double>()};
+  if (j.contains("ssim")) s.score.ssim = j["ssim"].get<double>();
   s.photo_luma = j.at("photo_luma").get<double>();
   s.render_luma = j.at("render_luma").get<double>();
   s.photo_sharpness = j.at("photo_sharpness").get<double>();
@@ -70,15 +87,7 @@ void writeScores(const fs::path& folder, const std::vector<ViewScore>& scores, i
   Image<std::uint8_t> sheet(2 * kThumbSide_px, kThumbSide_px * std::max(1, static_cast<int>(scores.size())));
   int y0 = 0;
   for (const ViewScore& s : scores) {
-    j["views"].push_back({{"camera", s.camera},
-                          {"split", splitOf(s)},
-                          {"psnr", s.score.psnr},
-                          {"ssim", s.score.ssim},
-                          {"psnr_mask", s.score.psnr_mask},
-                          {"photo_luma", s.photo_luma},
-                          {"render_luma", s.render_luma},
-                          {"photo_sharpness", s.photo_sharpness},
-                          {"render_sharpness", s.render_sharpness}});
+    j["views"].push_back(toJson(s));
     paste(s.photo_thumb, 0, y0, sheet);
     paste(s.render_thumb, kThumbSide_px, y0, sheet);
     y0 += kThumbSide_px;

@@ -177,7 +177,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
       if (split.n == 0) continue;
       const std::string name = held_out ? "_test" : "_train";
       c.scores["psnr" + name] = split.mean.psnr;
-      c.scores["ssim" + name] = split.mean.ssim;
+      if (split.mean.ssim) c.scores["ssim" + name] = *split.mean.ssim;
       c.scores["psnr_worst" + name] = scores[split.worst].score.psnr;
     }
     Progress part = c.progress.part(0.04, "views left out of the fit");

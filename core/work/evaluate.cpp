@@ -145,9 +145,7 @@ EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, const LastSolv
 void addMean(const std::string& row, const std::vector<PictureScore>& scores, ScoreTable& table) {
   if (scores.empty()) return;
   Scores mean;
-  for (const PictureScore& s : scores)
-    mean["psnr"] += s.psnr, mean["ssim"] += s.ssim, mean["psnr_mask"] += s.psnr_mask;
-  for (auto& [key, value] : mean) value /= static_cast<double>(scores.size());
+  put(meanOf(scores), "", mean);
   mean["pictures"] = static_cast<double>(scores.size());
   table.emplace_back(row, mean);
 }
@@ -166,10 +164,7 @@ EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, const LastSolved& l
     const std::shared_ptr<const GaussianFrame> result = solvedFrame(*sequence, frame);
     for (const ViewScore& v : scoreViews(loadFrameViews(capture, frame, Split::Test, 1, part), true,
                                          result->cloud, device, part)) {
-      Scores& own = e.each[nameOf(*sequence, frame)][v.camera];
-      own["rgb.psnr"] = v.score.psnr;
-      own["rgb.ssim"] = v.score.ssim;
-      own["rgb.psnr_mask"] = v.score.psnr_mask;
+      put(v.score, "rgb.", e.each[nameOf(*sequence, frame)][v.camera]);
       all.push_back(v.score);
     }
   }

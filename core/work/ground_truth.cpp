@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/base/count_text.h"
+#include "core/base/word_list.h"
 #include "core/base/error.h"
 #include "core/base/json_words.h"
 #include "core/base/log.h"
@@ -138,20 +139,14 @@ template <class Prepare>
 Scores meanScores(const std::string& what, const std::vector<Triple>& triples, const Progress& progress,
                   PictureScores& each, Prepare&& prepare) {
   Scores s;
-  const auto n = static_cast<double>(triples.size());
+  std::vector<PictureScore> all;
   for (const Triple& t : triples) {
-    const PictureScore p =
-        scorePicture(prepare(t.prediction, true), prepare(t.truth, false), t.mask, progress);
+    all.push_back(scorePicture(prepare(t.prediction, true), prepare(t.truth, false), t.mask, progress));
     progress.check();
-    s["psnr"] += p.psnr / n;
-    s["ssim"] += p.ssim / n;
-    s["psnr_mask"] += p.psnr_mask / n;
-    Scores& own = each[t.frame][t.camera];
-    own[what + ".psnr"] = p.psnr;
-    own[what + ".ssim"] = p.ssim;
-    own[what + ".psnr_mask"] = p.psnr_mask;
+    put(all.back(), fmt::format("{}.", what), each[t.frame][t.camera]);
   }
-  s["pictures"] = n;
+  put(meanOf(all), "", s);
+  s["pictures"] = static_cast<double>(triples.size());
   return s;
 }
 
@@ -236,11 +231,13 @@ void addRelightMean(ScoreTable& table, bool scaled) {
   double rows = 0;
   for (const auto& [name, s] : table) {
     if (name.rfind("relight_", 0) != 0 || name.ends_with("_scaled") != scaled) continue;
-    for (const char* k : {"psnr", "ssim", "psnr_mask", "pictures"}) mean[k] += s.at(k);
+    for (const char* k : {"psnr", "ssim", "psnr_mask", "pictures"})
+      if (s.contains(k)) mean[k] += s.at(k);
     ++rows;
   }
   if (rows < 2) return;
-  for (const char* k : {"psnr", "ssim", "psnr_mask"}) mean[k] /= rows;
+  for (const char* k : {"psnr", "ssim", "psnr_mask"})
+    if (mean.contains(k)) mean[k] /= rows;
   table.emplace_back(scaled ? "relight_mean_scaled" : "relight_mean", mean);
 }
 
@@ -328,7 +325,7 @@ void keepFrames(GroundTruth& truth, const std::vector<std::string>& names) {
   throw Error(
       Error::Kind::Data,
       fmt::format("\"{}\" has ground truth of none of the frames {}: it has {}", truth.folder.string(),
-                  namesText(names), before.empty() ? std::string("none at all") : namesText(before)));
+                  shortList(names), before.empty() ? std::string("none at all") : shortList(before)));
 }
 
 void requireFits(const GroundTruth& t, const std::vector<View>& views) {

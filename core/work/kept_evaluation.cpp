@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/count_text.h"
+#include "core/base/word_list.h"
 #include "core/base/json_words.h"
 #include "core/base/log.h"
 #include "core/io/file.h"
@@ -78,7 +79,7 @@ std::string otherResultsText(const KeptEvaluation& evaluation, const ScoredResul
       "the last evaluation is of other results than are shown: {} {} {} solved anew or further since, or "
       "with "
       "other settings; beam evaluate scores those of now",
-      nounText(others.size(), "frame"), namesText(others), nounText(others.size(), "was", "were"));
+      nounText(others.size(), "frame"), shortList(others), nounText(others.size(), "was", "were"));
 }
 
 }  // namespace beam

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/base/count_text.h"
+#include "core/base/word_list.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/pipeline/setting_changes.h"
@@ -95,7 +96,7 @@ LastSolved lastThatServes(const Project& project, const WantedResults& wanted, c
   const std::optional<Earlier> found = lastThatSolves(project, wanted, now, progress);
   if (!found) return {project, {}};
   const std::vector<std::string> changes = changesOf(*found, project);
-  const std::string told = changes.empty() ? "other takes" : namesText(changes);
+  const std::string told = changes.empty() ? "other takes" : shortList(changes);
   if (wanted.strict) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\": what is wanted is not solved with the settings in force, only before "
@@ -132,7 +133,7 @@ void LastSolved::tell() const {
     logWarning(
         "\"{}\": the results are those of other settings than are in force ({}): beam run it to solve "
         "the frames anew; --strict refuses",
-        project.folder().string(), namesText(changes));
+        project.folder().string(), shortList(changes));
   }
   if (left_out.empty()) return;
   std::vector<std::string> names;
@@ -145,7 +146,7 @@ void LastSolved::tell() const {
       "\"{}\": {} {} left out: solved with other settings, or in another take, than the frames that are "
       "used; beam run it to solve all of them alike",
       project.folder().string(), nounText(names.size(), "frame"),
-      fmt::format("{} {}", namesText(frameRanges(names, positions)), nounText(names.size(), "is", "are")));
+      fmt::format("{} {}", shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are")));
 }
 
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {

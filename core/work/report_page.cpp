@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "core/base/count_text.h"
 #include "core/base/duration_text.h"
+#include "core/base/word_list.h"
 #include "core/io/written_by.h"
 #include "core/stages/step_ids.h"
 #include "core/work/report_style.h"
@@ -37,7 +39,8 @@ std::string head(std::initializer_list<const char*> titles) {
 struct CameraRow {
   bool held_out = false;
   std::size_t left_out = 0;  // frames
-  double psnr = 0, ssim = 0, least = 0, n = 0;
+  double psnr = 0, least = 0, n = 0;
+  double ssim = 0, with_ssim = 0;
   std::string least_frame;
   std::vector<std::pair<std::size_t, double>> over_time;
 };
@@ -132,7 +135,7 @@ class PageWriter {
         const bool known = d.psnr_with > 0 || d.psnr_without > 0;
         out_ +=
             "<tr>" + cell(d.camera, "name") + cell(fmt::format("{} {}.", d.camera, d.text)) +
-            cell(namesText(d.frames, kListed)) +
+            cell(shortList(d.frames, kListed)) +
             (known ? number(d.psnr_with, 2) + number(d.psnr_without, 2) : cell("-", "n") + cell("-", "n")) +
             "</tr>\n";
       }
@@ -181,13 +184,16 @@ class PageWriter {
   }
 
   // psnr or ssim of both splits, the worst frames marked.
-  void splitCurve(const char* title, const char* unit, double PictureScore::*figure) {
+  template <class Figure>
+  void splitCurve(const char* title, const char* unit, Figure figure) {
     Chart c = chart(title, unit);
     for (const bool held_out : {false, true}) {
       ChartSeries s{held_out ? "held out" : "training", {}};
       for (std::size_t f = 0; f < h_.frames.size(); ++f) {
         const SplitScore split = meanOf(h_.frames[f].views, held_out);
-        if (split.n > 0) s.points.emplace_back(f, split.mean.*figure);
+        const std::optional<double> value =
+            split.n > 0 ? std::optional<double>(split.mean.*figure) : std::nullopt;
+        if (value) s.points.emplace_back(f, *value);
       }
       if (s.points.empty()) continue;
       for (std::size_t p = 0; p < s.points.size() && h_.frames.size() > kMarked; ++p) {
@@ -232,7 +238,8 @@ class PageWriter {
         r.held_out = v.held_out;
         r.left_out += v.left_out;
         if (r.n == 0 || v.score.psnr < r.least) r.least = v.score.psnr, r.least_frame = frames_[f];
-        r.psnr += v.score.psnr, r.ssim += v.score.ssim, ++r.n;
+        r.psnr += v.score.psnr, ++r.n;
+        if (v.score.ssim) r.ssim += *v.score.ssim, ++r.with_ssim;
         r.over_time.emplace_back(f, v.score.psnr);
       }
     }
@@ -281,8 +288,8 @@ class PageWriter {
             "<tbody>";
     for (const auto& [name, r] : rows) {
       out_ += "<tr>" + cell(name, accused.contains(name) ? "name bad" : "name") + cell(useOf(r)) +
-              number(r.psnr / r.n, 2) + number(r.ssim / r.n, 4) + number(r.least, 2) + cell(r.least_frame) +
-              "<td>" + sparkline(r, low, high) + "</td></tr>\n";
+              number(r.psnr / r.n, 2) + (r.with_ssim > 0 ? number(r.ssim / r.with_ssim, 4) : cell("-", "n")) +
+              number(r.least, 2) + cell(r.least_frame) + "<td>" + sparkline(r, low, high) + "</td></tr>\n";
     }
     out_ += fmt::format("</tbody></table>\n<p class=\"note\">Lines: PSNR from {:.1f} to {:.1f} dB.</p>\n",
                         low, high);

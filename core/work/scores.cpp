@@ -44,6 +44,12 @@ Json worstOf(const PictureScores& each) {
 
 }  // namespace
 
+void put(const PictureScore& score, const std::string& prefix, Scores& scores) {
+  scores[prefix + "psnr"] = score.psnr;
+  if (score.ssim) scores[prefix + "ssim"] = *score.ssim;
+  scores[prefix + "psnr_mask"] = score.psnr_mask;
+}
+
 Better betterOf(const std::string& score) {
   const auto holds = [&](const char* word) { return score.find(word) != std::string::npos; };
   if (holds("psnr") || holds("ssim")) return Better::More;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/method/evaluate.h"
+
 namespace beam {
 
 using Scores = std::map<std::string, double>;  // "psnr", "ssim", "psnr_mask", "angle_deg", "mae_mm", ...
@@ -17,6 +19,9 @@ using PictureScores = std::map<std::string, std::map<std::string, Scores>>;
 // By frame, which of its results was scored.
 using ScoredResults = std::map<std::string, std::string>;
 inline constexpr const char* kResultsKey = "results";
+
+// Under their names after `prefix`: "", "rgb.". A score that there is none of is left out.
+void put(const PictureScore& score, const std::string& prefix, Scores& scores);
 
 // In the project's folder: what its last evaluation found, as means and frame by frame.
 inline constexpr const char* kEvaluationFile = "evaluation.json";

@@ -35,11 +35,11 @@ bool isChosen(const View& view, const std::string& word) {
   std::vector<std::string> names;
   for (const View& v : capture.views) names.push_back(v.name);
   if (isPattern(word)) {
-    throw Error(Error::Kind::Usage, fmt::format("--cameras: no camera is like \"{}\"; the cameras are {}",
-                                                word, fmt::join(names, ", ")));
+    throw Error(Error::Kind::Usage, fmt::format("--cameras: no camera is like \"{}\"; {}", word,
+                                                knownNames("cameras", word, names)));
   }
-  throw Error(Error::Kind::Usage,
-              fmt::format("--cameras: {}", noSuchName("camera", word, names, "beam check lists them")));
+  const std::string known = knownNames("cameras", word, names);
+  throw Error(Error::Kind::Usage, fmt::format("--cameras: {}", noSuchName("camera", word, names, known)));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <pty.h>
 #include <sys/ioctl.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <sstream>
 
@@ -99,6 +100,19 @@ TEST_F(Terminal, NoLineIsLongerThanTheTerminalIsWideAndNoneIsLost) {
     expectWhole(run.screen());
     EXPECT_THAT(run.all(), HasSubstr(" % ")) << "a bar was drawn";
   }
+}
+
+TEST_F(Terminal, WordsOfAnAnswerAreFoldedThereAndNotInAFile) {
+  OnTerminal run({"stages"}, 80);
+  EXPECT_EQ(run.wait(), 0);
+  EXPECT_EQ(run.screen().wraps(), 0u);
+  EXPECT_TRUE(run.screen().holds("    capture.screen.enabled") ||
+              run.screen().holds("  capture.screen.enabled"));
+  const std::string piped = Running(folder_.path(), {"stages"}).wait().out;
+  std::istringstream lines(piped);
+  std::size_t longest = 0;
+  for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+  EXPECT_GT(longest, 100u) << "a line is one thing to a program that reads it";
 }
 
 TEST_F(Terminal, ItsWidthMayChangeWhileTheProgramRuns) {

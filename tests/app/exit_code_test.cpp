@@ -9,6 +9,7 @@ namespace beam::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using ::testing::Not;
@@ -132,7 +133,11 @@ TEST_F(ExitCode, AFrameWithoutPicturesFailsAloneWith10) {
   EXPECT_EQ(said.code, 10) << said.err;
   EXPECT_THAT(said.err, HasSubstr("000000"));
   EXPECT_THAT(said.err, HasSubstr("frame 000001 surface.mesh: done"));
+  EXPECT_THAT(said.err, HasSubstr("1 of 2 frames failed (000000); the others are done"));
+  EXPECT_THAT(said.err, Not(HasSubstr(": frame 000000: "))) << "a place is named once";
   EXPECT_THAT(beam({"status", at("p.beam").string()}).out, HasSubstr("failed"));
+  words.back() = "0";
+  EXPECT_THAT(beam(words).err, AllOf(HasSubstr("the frame failed (000000)"), Not(HasSubstr("the others"))));
 }
 
 TEST_F(ExitCode, AnEmptyPanoramaIsBadInput) {

@@ -111,6 +111,49 @@ TEST(Help, OfEveryTopicFitsATerminal) {
   EXPECT_EQ(beam({"help"}).out, beam({"--help"}).out);
 }
 
+TEST(Help, OfSeveralIsThatOfEach) {
+  EXPECT_EQ(beam({"help", "render", "files"}).out,
+            beam({"help", "render"}).out + "\n" + beam({"help", "files"}).out);
+  expectUsage({"help", "render", "exprot"},
+              "beam help: there is no topic or command \"exprot\"; did you mean \"export\"?");
+  expectUsage({"help", "render", "--list"}, "beam help: --list is of everything");
+}
+
+TEST(Help, AsJsonOfACommandIsOfThatAlone) {
+  const json run = json::parse(beam({"help", "run", "--json"}).out);
+  ASSERT_EQ(run.at("commands").size(), 1u);
+  EXPECT_EQ(run["commands"][0].at("command"), "beam run");
+  EXPECT_TRUE(run.at("topics").empty());
+  EXPECT_EQ(run.at("json").size(), 2u) << "of run and of run --dry-run";
+  const json frames = json::parse(beam({"help", "frames", "--json"}).out);
+  EXPECT_TRUE(frames.at("commands").empty());
+  EXPECT_EQ(frames["topics"].at(0).at("text").get<std::string>() + "\n", beam({"help", "frames"}).out);
+}
+
+TEST(Help, OfCapturesNamesWhatLiesInOneAndIsNamedWhereOneIsAskedFor) {
+  const std::string text = beam({"help", "captures"}).out;
+  const TempDir dir;
+  for (const auto& entry : fs::directory_iterator(SampleHouse::capture())) {
+    const std::string name = entry.path().filename().string();
+    if (name != "gt") {
+      EXPECT_THAT(text, HasSubstr(name));
+    }
+  }
+  for (const Words& words : std::vector<Words>{
+           {"new", "--help"}, {"process", "--help"}, {"check", dir.path().string()}, {"help"}}) {
+    const Said said = beam(words);
+    EXPECT_THAT(flat(said.out + said.err),
+                ::testing::ContainsRegex("beam help captures|captures +what the folder"));
+  }
+}
+
+TEST(Help, OfFilesNamesWhatAProjectHolds) {
+  const std::string text = beam({"help", "files"}).out;
+  for (const auto& entry : fs::directory_iterator(SolvedHouse::project()))
+    EXPECT_THAT(text, HasSubstr(entry.path().filename().string()));
+  EXPECT_THAT(flat(text), Not(HasSubstr("what the window told")));
+}
+
 TEST(Help, OfFilesNamesEveryChannel) {
   const std::string text = beam({"help", "files"}).out;
   for (const std::string& id : channelIds()) EXPECT_THAT(text, HasSubstr("  " + id));
@@ -156,6 +199,36 @@ TEST(Words, ThatAreUnknownAreToldWithTheSimilarOneOrNone) {
   expectUsage({"run", "x", "--wobble"}, "beam run: there is no flag \"--wobble\". See beam run --help");
   expectUsage({"frobnicate"}, "beam: there is no command \"frobnicate\"; there are process, new, run");
   expectUsage({"status", "x", "y"}, "beam status: \"y\" is a word too many. See beam status --help");
+}
+
+TEST(Words, ThatPeopleTypeForACommandNameIt) {
+  expectUsage({"import", "x"}, "beam: there is no command \"import\"; did you mean beam new or beam check?");
+  expectUsage(
+      {"relight", "x", "--out", "y"},
+      "beam: there is no command \"relight\"; did you mean beam render --channels relight --environment");
+  expectUsage({"Train"}, "beam: there is no command \"Train\"; did you mean beam run?");
+  const std::string commands = beam({"help", "--list"}).out + "\n";
+  for (const char* word : {"convert", "view", "gc", "info", "eval", "validate", "config", "demo", "man"}) {
+    const std::string err = beam({word}).err;
+    std::smatch meant;
+    ASSERT_TRUE(std::regex_search(err, meant, std::regex("did you mean (beam [a-z]+|beam-studio)"))) << err;
+    if (meant[1] != "beam-studio") {
+      EXPECT_THAT(commands, HasSubstr(meant[1].str() + "\n"));
+    }
+    EXPECT_THAT(commands, Not(HasSubstr(std::string("beam ") + word + "\n"))) << "it is a command by now";
+  }
+}
+
+TEST(Words, BehindTwoDashesAFlagIsToldWhereItBelongs) {
+  expectUsage({"run", "--", "x", "--dry-run"},
+              "beam run: \"--dry-run\" stands behind \"--\", where nothing is taken for a flag");
+}
+
+TEST(Words, ThatAreHalfANumberAreRefused) {
+  const TempDir dir;
+  for (const char* size : {"16x16x16", "16x17abc", "x16", "16", "16 x 16", "+16x16", "16x"})
+    expectUsage({"sample", (dir / "s").string(), "--size", size}, "--size expects WIDTHxHEIGHT");
+  EXPECT_FALSE(fs::exists(dir / "s"));
 }
 
 TEST(Words, ThatAreMissingOrWrongAreToldAsSentences) {

@@ -214,6 +214,10 @@ TEST_F(Settings, CamerasAreChosenByPatternsAndWordsTogether) {
   EXPECT_THAT(draws("train, *0").out, HasSubstr("of 6 cameras"));
   EXPECT_THAT(draws("ALL").out, HasSubstr("cameras"));
   for (const char* nothing : {"", " , ", "zebra*", "zebra"}) EXPECT_EQ(draws(nothing).code, 2) << nothing;
+  for (const char* nothing : {"zebra*", "zebra"})
+    EXPECT_THAT(draws(nothing).err, HasSubstr("the cameras are cam00, ")) << nothing;
+  EXPECT_THAT(beam({"check", SampleHouse::capture().string(), "--hold-out", "zebra"}).err,
+              HasSubstr("the cameras are cam00, "));
   EXPECT_EQ(beam({"render", project(), "--channels", "", "--out", at("p")}).code, 2);
   EXPECT_EQ(beam({"check", SampleHouse::capture().string(), "--hold-out", "none", "--up", "+y"}).code, 0);
 }
@@ -228,6 +232,35 @@ TEST_F(Settings, TheWrongKindOfThingIsToldWhatItIs) {
   EXPECT_THAT(beam({"process", at("film.mp4"), "--out", at("x.beam")}).err, HasSubstr("is a video"));
   for (const Words& words : std::vector<Words>{{"status", capture}, {"check", project()}})
     EXPECT_EQ(beam(words).code, 65);
+}
+
+TEST_F(Settings, CheckSaysWhatAFileIsThatItDoesNotLookAt) {
+  const auto check = [&](const char* name, const std::string& bytes) {
+    std::ofstream(at(name)) << bytes;
+    const Said said = beam({"check", at(name)});
+    EXPECT_EQ(said.code, 65) << name;
+    return said.err;
+  };
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
+  EXPECT_THAT(check("m.ply", ply + "element face 2\nproperty list uchar int vertex_indices\nend_header\n"),
+              HasSubstr("is a mesh (1 vertex, 2 triangles)"));
+  EXPECT_THAT(check("p.ply", ply + "end_header\n0\n"),
+              AllOf(HasSubstr("is a point cloud"), HasSubstr("scale_0")));
+  EXPECT_THAT(check("s.spz", "x"), AllOf(HasSubstr("splats of a kind that is not read"), HasSubstr(".ply")));
+  EXPECT_THAT(check("s.sog", "PK"), HasSubstr("splats of a kind that is not read"));
+  EXPECT_THAT(check("environment.png", "x"),
+              AllOf(HasSubstr("is a PNG or JPEG picture"), HasSubstr(".exr or .hdr")));
+  EXPECT_THAT(check("dataset.json", "{}"), HasSubstr("name the folder"));
+}
+
+TEST_F(Settings, CheckEndsWithAnErrorWhereNoPictureCanBeUsed) {
+  std::filesystem::copy(SampleHouse::capture(), at("c"), std::filesystem::copy_options::recursive);
+  EXPECT_EQ(beam({"check", at("c")}).code, 0);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(at("c") + "/images"))
+    if (entry.is_regular_file()) std::ofstream(entry.path()) << "no picture";
+  const Said said = beam({"check", at("c")});
+  EXPECT_EQ(said.code, 65);
+  EXPECT_THAT(said.err, HasSubstr("cannot be processed"));
 }
 
 TEST_F(Settings, APanoramaIsReadBeforeTheProjectIsMade) {

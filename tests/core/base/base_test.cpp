@@ -114,6 +114,21 @@ TEST(Fields, AnUnknownNameIsToldWithASimilarOneOrWhereToLook) {
             "there is no setting \"colour\"; beam stages lists them");
 }
 
+TEST(Fields, KnownNamesAreAllOfFewAndTheNearestOfMany) {
+  EXPECT_EQ(knownNames("cameras", "door", {"cam00", "cam01"}), "the cameras are cam00, cam01");
+  std::vector<std::string> many;
+  for (int i = 0; i < 40; ++i) many.push_back("cam" + std::to_string(10 + i));
+  many.emplace_back("door1");
+  const std::string text = knownNames("cameras", "door", many);
+  EXPECT_THAT(text, ::testing::StartsWith("the cameras nearest to it are door1, "));
+  EXPECT_THAT(text, ::testing::EndsWith("(of 41)"));
+}
+
+TEST(WordList, AShortListSaysHowManyMoreThereAre) {
+  EXPECT_EQ(shortList({"a", "b"}, 2), "a, b");
+  EXPECT_EQ(shortList({"a", "b", "c", "d"}, 2), "a, b and 2 more");
+}
+
 TEST(Fields, JsonHoldsEveryValue) {
   const std::string json = fieldsToJson(fieldsOf(Options{}));
   EXPECT_THAT(json, ::testing::HasSubstr("\"inner.weight\": 0.5"));
@@ -152,8 +167,6 @@ TEST(CountText, SaysOneAndMany) {
   EXPECT_EQ(countText(1, "file was", "files were"), "1 file was");
   EXPECT_EQ(countText(-1234567, "step"), "-1,234,567 steps");
   EXPECT_EQ(nounText(1, "frame") + " " + nounText(2, "frame"), "frame frames");
-  EXPECT_EQ(namesText({"a", "b"}), "a, b");
-  EXPECT_EQ(namesText({"a", "b", "c"}, 2), "a, b and 1 more");
 }
 
 TEST(Progress, PartsCoverTheirShareAndReportsNeverGoBack) {

@@ -84,21 +84,21 @@ TEST(Psnr, AsksEveryChannelAndOnlyTheRectangle) {
 
 TEST(Ssim, OfAPictureWithItselfIsOneAndOfTwoTheSameBothWays) {
   const Planes a = noise(30, 24, 3, 2), b = noise(30, 24, 3, 3);
-  EXPECT_NEAR(ssim(a, a, wholeOf(a)), 1, 1e-12);
+  EXPECT_NEAR(*ssim(a, a, wholeOf(a)), 1, 1e-12);
   EXPECT_EQ(ssim(a, b, wholeOf(a)), ssim(b, a, wholeOf(a)));
-  EXPECT_LT(ssim(a, b, wholeOf(a)), 0.2) << "they have nothing in common";
+  EXPECT_LT(*ssim(a, b, wholeOf(a)), 0.2) << "they have nothing in common";
 }
 
 TEST(Ssim, OfTwoConstantsIsTheTermOfTheirBrightness) {
   const Planes a(16, 16, 1, 0.3f), b(16, 16, 1, 0.6f);
-  EXPECT_NEAR(ssim(a, b, wholeOf(a)), (2 * 0.3 * 0.6 + 1e-4) / (0.3 * 0.3 + 0.6 * 0.6 + 1e-4), 1e-6);
+  EXPECT_NEAR(*ssim(a, b, wholeOf(a)), (2 * 0.3 * 0.6 + 1e-4) / (0.3 * 0.3 + 0.6 * 0.6 + 1e-4), 1e-6);
 }
 
 TEST(Ssim, OfAPictureWithItsNegativeIsNegative) {
   const Planes a = noise(24, 24, 1, 4);
   Planes negative = a;
   for (float& v : negative.values) v = 1 - v;
-  EXPECT_LT(ssim(a, negative, wholeOf(a)), -0.5);
+  EXPECT_LT(*ssim(a, negative, wholeOf(a)), -0.5);
 }
 
 TEST(Ssim, FallsAsNoiseGrows) {
@@ -107,7 +107,7 @@ TEST(Ssim, FallsAsNoiseGrows) {
   for (const float share : {0.05f, 0.1f, 0.2f, 0.4f}) {
     Planes b = a;
     for (std::size_t i = 0; i < b.values.size(); ++i) b.values[i] += share * n.values[i];
-    const double now = ssim(a, b, wholeOf(a));
+    const double now = *ssim(a, b, wholeOf(a));
     EXPECT_LT(now, last - 0.005);
     last = now;
   }
@@ -119,7 +119,14 @@ TEST(Ssim, IsTheSlowFormAlsoInMoreRowsThanABandAndInARectangle) {
   for (std::size_t i = 0; i < b.values.size(); ++i) b.values[i] = 0.7f * a.values[i] + 0.3f * b.values[i];
   for (const PixelRect r : {PixelRect{0, 0, 17, 150}, PixelRect{0, 0, 17, 74}, PixelRect{0, 0, 17, 75},
                             PixelRect{3, 20, 15, 120}, PixelRect{6, 139, 17, 150}})
-    EXPECT_NEAR(ssim(a, b, r), slowSsim(a, b, r), 1e-12) << r.x0 << " " << r.y0 << " " << r.y1;
+    EXPECT_NEAR(*ssim(a, b, r), slowSsim(a, b, r), 1e-12) << r.x0 << " " << r.y0 << " " << r.y1;
+}
+
+TEST(Ssim, OfARectangleThatHoldsNoWindowThereIsNone) {
+  const Planes a = noise(30, 30, 3, 9);
+  EXPECT_TRUE(ssim(a, a, {0, 0, 11, 11}));
+  for (const PixelRect r : {PixelRect{0, 0, 10, 30}, PixelRect{0, 0, 30, 10}, PixelRect{5, 5, 6, 6}})
+    EXPECT_FALSE(ssim(a, a, r)) << r.x1 << " " << r.y1;
 }
 
 TEST(MaskBounds, AreTheBoxOfWhatIsNotBlack) {
@@ -138,6 +145,25 @@ TEST(MaskBounds, GrowToAWindowAtTheBordersOfThePicture) {
     const PixelRect r = maskBounds(mask);
     EXPECT_EQ(ivec2(r.x0, r.y0), ivec2(at.x ? 49 : 0, at.y ? 39 : 0)) << at.x << " " << at.y;
     EXPECT_EQ(ivec2(r.x1, r.y1), ivec2(at.x ? 60 : 11, at.y ? 50 : 11)) << at.x << " " << at.y;
+  }
+}
+
+TEST(MaskBounds, GrowToAWindowOnBothSidesOfASmallMask) {
+  Image<std::uint8_t> mask(60, 50, 0);
+  for (int y = 5; y < 45; ++y)
+    for (const int x : {30, 31, 32}) mask(x, y) = 255;
+  const PixelRect r = maskBounds(mask);
+  EXPECT_EQ(ivec2(r.x0, r.x1), ivec2(26, 37));
+  EXPECT_EQ(ivec2(r.y0, r.y1), ivec2(5, 45));
+}
+
+TEST(MaskBounds, StayInAPictureThatIsSmallerThanAWindow) {
+  for (const ivec2& size : {ivec2(8, 40), ivec2(40, 8), ivec2(3, 2), ivec2(11, 11)}) {
+    Image<std::uint8_t> mask(size.x, size.y, 0);
+    mask(1, 1) = 255;
+    const PixelRect r = maskBounds(mask);
+    EXPECT_EQ(ivec2(r.x0, r.y0), ivec2(0, 0));
+    EXPECT_EQ(ivec2(r.x1, r.y1), glm::min(size, ivec2(11))) << size.x << " x " << size.y;
   }
 }
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/io/capture_check.h"
+#include "core/io/capture_reader.h"
 #include "core/io/file.h"
 #include "core/io/mesh_ply.h"
 #include "core/scene/environment.h"
@@ -400,67 +400,6 @@ TEST(CaptureFormats, ThePanoramaOfAPlusZCaptureKeepsItsPixelsAndPointsWhereTheDa
     const dvec3 d(std::cos(el) * std::cos(az), std::cos(el) * std::sin(az), std::sin(el));
     EXPECT_NEAR(glm::length(dvec3(brightestDirection(e)) - worldFromCapture(c.set.up) * d), 0, 1e-5);
   }
-}
-
-TEST(CaptureCheck, NamesFileCameraAndFrameOfEachDamagedPicture) {
-  const TempDir dir;
-  put(dir / "dataset.json", kDataset);
-  putPictures(dir.path());
-  const std::string whole = readTextFile(dir / "images/b/000004.png");
-  put(dir / "images/b/000004.png", whole.substr(0, whole.size() - 9));
-  writePng(dir / "masks/a/000004.png", Image<std::uint8_t>(7, 7));
-  const CheckReport r = checkPath(dir.path());
-  EXPECT_EQ(r.kind, "capture");
-  EXPECT_EQ(r.cameras[0].frames, 1);
-  EXPECT_EQ(r.cameras[1].frames, 1);
-  EXPECT_EQ(r.cameras[1].mask_coverage, 1);
-  EXPECT_THAT(r.warnings, ::testing::Contains(AllOf(HasSubstr("b/000004.png"), HasSubstr("truncated"),
-                                                    HasSubstr("camera b"), HasSubstr("frame 000004"))));
-  EXPECT_THAT(r.warnings, ::testing::Contains(AllOf(HasSubstr("masks/a/000004.png"), HasSubstr("7 x 7"))));
-  EXPECT_THAT(toJson(r), AllOf(HasSubstr("\"layout\": \"dataset.json\""), HasSubstr("\"up\": \"+Z\"")));
-  EXPECT_THAT(toText(r), HasSubstr("frames: 2 (000003 to 000004)"));
-}
-
-TEST(CaptureCheck, SaysInTwoHalvesWhatItSaysAtOnce) {
-  const TempDir dir;
-  put(dir / "dataset.json", kDataset);
-  putPictures(dir.path());
-  const std::string whole = readTextFile(dir / "images/b/000004.png");
-  put(dir / "images/b/000004.png", whole.substr(0, whole.size() - 9));
-  const ImportedCapture capture = openCapture(dir.path());
-  CheckReport r = checkDescription(dir.path(), capture);
-  ASSERT_EQ(r.cameras.size(), 3u);
-  EXPECT_EQ(r.cameras[0].frames, 0) << "no picture was looked at";
-  EXPECT_THAT(r.warnings, ::testing::Not(::testing::Contains(HasSubstr("truncated"))));
-  double fraction = 0;
-  Progress progress({}, [&](const ProgressReport& report) { fraction = report.fraction; });
-  checkPictures(capture.set, r, progress);
-  EXPECT_EQ(fraction, 1);
-  EXPECT_EQ(toJson(r), toJson(checkPath(dir.path())));
-  EXPECT_EQ(toText(r), toText(checkPath(dir.path())));
-  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("truncated")));
-}
-
-TEST(CaptureCheck, EndsWhenItIsAskedTo) {
-  const TempDir dir;
-  put(dir / "dataset.json", kDataset);
-  putPictures(dir.path());
-  std::stop_source stop;
-  stop.request_stop();
-  Progress progress(stop.get_token());
-  EXPECT_THROW(checkPath(dir.path(), {}, &progress), Cancelled);
-}
-
-TEST(CaptureCheck, ListsWhatWasRepairedInAPanorama) {
-  const TempDir dir;
-  Planes p(8, 4, 3, 0.5f);
-  p.values[5] = INFINITY;
-  p.values[6] = -1;
-  writeExr(dir / "e.exr", p, {"R", "G", "B"}, ExrPrecision::Float);
-  const CheckReport r = checkPath(dir / "e.exr");
-  ASSERT_TRUE(r.panorama);
-  EXPECT_EQ(r.panorama->width, 8);
-  EXPECT_THAT(r.warnings, ElementsAre(HasSubstr("finite")));
 }
 
 // Of the points that fall into the picture of a view, the share that lies in its mask; and how many fall

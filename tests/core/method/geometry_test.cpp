@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/method/evaluate.h"
@@ -92,7 +93,18 @@ TEST(Scores, AConstantErrorGivesItsPsnr) {
   EXPECT_NEAR(scorePicture(a, b, mask).psnr, 20, 1e-4);
   EXPECT_NEAR(scorePicture(a, b, mask).psnr_mask, 20, 1e-4);
   EXPECT_EQ(scorePicture(a, a, mask).psnr, 100);
-  EXPECT_NEAR(scorePicture(a, a, mask).ssim, 1, 1e-9);
+  EXPECT_NEAR(scorePicture(a, a, mask).ssim.value(), 1, 1e-9);
+}
+
+TEST(Scores, OfAPictureWithoutRoomForSsimHasNoneAndMeansLeaveItOut) {
+  const Planes small(8, 20, 3, 0.5f), other(8, 20, 3, 0.6f);
+  const PictureScore without = scorePicture(small, other, Image<std::uint8_t>(8, 20, 255));
+  EXPECT_FALSE(without.ssim);
+  EXPECT_NEAR(without.psnr, 20, 1e-4);
+  const PictureScore both[] = {without, {.psnr = 30, .ssim = 0.8, .psnr_mask = 30}};
+  EXPECT_NEAR(meanOf(both).psnr, 25, 1e-4);
+  EXPECT_EQ(meanOf(both).ssim, 0.8);
+  EXPECT_FALSE(meanOf(std::span(both, 1)).ssim);
 }
 
 }  // namespace

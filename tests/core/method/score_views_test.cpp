@@ -2,6 +2,8 @@
 // A render that shows nothing scores what a black picture scores; means and worst camera follow the split.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/method/score_views.h"
 #include "tests/support/sphere_capture.h"
@@ -59,6 +61,23 @@ TEST(ScoreViews, AViewScoresTheSameAmongMany) {
   const ViewScore last = scored({views.back()})[0];
   EXPECT_EQ(all.back().score.ssim, last.score.ssim);
   EXPECT_EQ(all.back().photo_thumb.pixels, last.photo_thumb.pixels);
+}
+
+// A subject of two pixels: less than a window of SSIM, also where a picture is no larger than that.
+TEST(ScoreViews, ATinySubjectAndATinyPictureAreScored) {
+  std::vector<FrameView> views = photographs({});
+  for (FrameView& v : views) {
+    std::fill(v.mask.pixels.begin(), v.mask.pixels.end(), std::uint8_t{0});
+    v.mask(v.mask.width / 2, v.mask.height / 2) = v.mask(v.mask.width / 2 + 1, v.mask.height / 2) = 255;
+  }
+  EXPECT_TRUE(scored(views)[0].score.ssim);
+  FrameView& tiny = views[0];
+  tiny.photo = Image<u8vec3>(9, 7, u8vec3(90));
+  tiny.mask = Image<std::uint8_t>(9, 7, 255);
+  tiny.camera.width = 9, tiny.camera.height = 7;
+  const ViewScore score = scored({tiny})[0];
+  EXPECT_FALSE(score.score.ssim);
+  EXPECT_GT(score.score.psnr, 0);
 }
 
 TEST(ScoreViews, StopAfterTheLastRender) {

@@ -141,7 +141,8 @@ TEST(EarlierVersions, HaveTheKeysThatTheirResultsHave) {
 TEST(SettingsReport, SaysWhatEachPresetSaysAndWhereAValueComesFrom) {
   FakeHouse house;
   EXPECT_THAT(stagesText(*house.setup),
-              HasSubstr("surface.iterations = 10 (draft 3; 1 to 1,000)\n      Steps."));
+              HasSubstr("surface.iterations: default 10 (draft 3; 1 to 1,000)\n      Steps."))
+      << "nothing is in force without a project";
   Project project = house.newProject();
   project.setPreset("draft");
   project.set("surface.solver", std::string("fancy"));

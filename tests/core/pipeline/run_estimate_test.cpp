@@ -13,6 +13,8 @@
 namespace beam::testing {
 namespace {
 
+using ::testing::HasSubstr;
+
 StepKind kind(const std::string& step, bool later = false, const std::string& settings = {}) {
   return {StepId(step), later, digestOf(settings)};
 }
@@ -26,6 +28,8 @@ TEST(RunEstimate, OfAFreshProjectIsEverythingAndUnmeasured) {
   EXPECT_EQ(e.steps_missing, 14);
   EXPECT_FALSE(e.measured);
   EXPECT_EQ(e.seconds_high, 0);
+  EXPECT_THAT(toText(e),
+              HasSubstr("14 of 14 results to compute, for 3 of 3 frames; the time is not known yet"));
 }
 
 TEST(RunEstimate, OfADoneRunIsNothing) {

@@ -95,7 +95,9 @@ TEST_F(TakeRun, AFrameIsFittedAloneWhereWhatItBuildsOnIsNotSolved) {
   changed.save();
   RunRequest third = framesOf({3});
   third.keeps_takes = true;
-  EXPECT_TRUE(estimateRun(house_.open(), third, {}).leaves_take);
+  const RunEstimate estimate = estimateRun(house_.open(), third, {});
+  EXPECT_TRUE(estimate.leaves_take);
+  EXPECT_THAT(toText(estimate), HasSubstr("note: a frame of a take is solved alone here"));
   EXPECT_FALSE(estimateRun(house_.open(), framesOf({0}), {}).leaves_take) << "nothing is before it";
   const Counts counts = countsOf(third);
   EXPECT_EQ(counts.at("surface.fit"_step), 1);
@@ -133,7 +135,7 @@ TEST_F(TakeRun, StatusTellsTakesAndStepsThatAreNotNeeded) {
   countsOf(framesOf({0, 1, 2}));
   const std::string text = statusText(house_.open()), json = statusJson(house_.open());
   EXPECT_THAT(text, HasSubstr("takes 000 to 002\n"));
-  EXPECT_THAT(text, HasSubstr("done 000, 001, 002; not needed (3 frames)"));
+  EXPECT_THAT(text, HasSubstr("done 000, 001, 002; not needed (3 frames: solved alone, in no take)"));
   EXPECT_THAT(json, HasSubstr("\"state\": \"not needed\""));
 }
 
