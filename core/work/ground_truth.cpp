@@ -9,10 +9,10 @@
 #include <optional>
 
 #include "core/base/count_text.h"
-#include "core/base/word_list.h"
 #include "core/base/error.h"
 #include "core/base/json_words.h"
 #include "core/base/log.h"
+#include "core/base/word_list.h"
 #include "core/io/capture_description.h"
 #include "core/io/file.h"
 #include "core/io/image_file.h"

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/count_text.h"
-#include "core/base/word_list.h"
 #include "core/base/json_words.h"
 #include "core/base/log.h"
+#include "core/base/word_list.h"
 #include "core/io/file.h"
 
 namespace beam {

@@ -10,9 +10,9 @@
 #include <set>
 
 #include "core/base/count_text.h"
-#include "core/base/word_list.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/word_list.h"
 #include "core/pipeline/setting_changes.h"
 #include "core/scene/frame_list.h"
 #include "core/stages/project_sequence.h"
