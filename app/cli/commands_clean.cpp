@@ -100,17 +100,17 @@ std::string toJson(const CleanPlan& plan, bool dry_run) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-// Of stages of which nothing would stay: pictures and exports are made of these results now.
+// Pictures and exports are made of these results now.
 std::string lastOnesText(const CleanPlan& plan) {
-  std::vector<std::string> stages;
-  for (const StageUse& stage : plan.use.stages)
-    if (!stage.stage.empty() && stage.in_force.count == 0 && stage.others.count > 0)
-      stages.push_back(stage.stage);
-  if (stages.empty()) return {};
+  if (plan.unsolved.empty()) return {};
+  std::vector<std::string> parts;
+  for (const auto& [stage, frames] : plan.unsolved)
+    parts.push_back(fmt::format("{} of {} {}", stage, nounText(frames.size(), "frame"), shortList(frames)));
   return fmt::format(
-      "no result of {} is of the settings in force: those that would go are what render, export and report "
-      "use now; beam run it first, or take the settings back with --unset",
-      fmt::join(stages, ", "));
+      "no result with the settings in force stands in for {}: those that would go are what render, export "
+      "and "
+      "report use now; beam run it first, or take the settings back with --unset",
+      fmt::join(parts, ", "));
 }
 
 std::string goneText(const CleanPlan& plan) {

@@ -14,6 +14,7 @@
 #include "core/scene/channel.h"
 #include "core/work/export_frames.h"
 #include "core/work/render_frames.h"
+#include "core/work/selection.h"
 
 namespace beam {
 namespace {
@@ -22,9 +23,9 @@ constexpr const char* kSolvedFramesHelp =
     "Frames such as 0-7, or all that are solved or between those of a scout run; see beam help frames";
 
 struct RenderFlags {
-  std::string project, channels = "rgb", cameras = "test", frames = "all", environment;
+  std::string project, channels = "rgb", cameras, frames = "all", environment;
   std::string frame_of = "capture", out;
-  bool layers = false, skip_existing = false, force = false, strict = false;
+  bool names_cameras = false, layers = false, skip_existing = false, force = false, strict = false;
   DeviceChoice device;
 };
 
@@ -74,17 +75,19 @@ std::string writtenText(const RenderFramesOutcome& outcome, const RenderFlags& f
 }
 
 int runRender(const RenderFlags& flags, CommandContext& context) {
-  RenderFramesRequest request{.project = Project::open(flags.project, context.services.pipeline),
-                              .channels = channelsIn(flags.channels),
-                              .cameras = flags.cameras,
-                              .frames = flags.frames,
-                              .environments = {},
-                              .world_frame = wantsWorld(flags.frame_of),
-                              .layers = flags.layers,
-                              .skip_existing = flags.skip_existing,
-                              .out = flags.out,
-                              .force = flags.force,
-                              .strict = flags.strict};
+  const Project project = Project::open(flags.project, context.services.pipeline);
+  RenderFramesRequest request{
+      .project = project,
+      .channels = channelsIn(flags.channels),
+      .cameras = flags.names_cameras ? flags.cameras : usualCameras(project.capture()),
+      .frames = flags.frames,
+      .environments = {},
+      .world_frame = wantsWorld(flags.frame_of),
+      .layers = flags.layers,
+      .skip_existing = flags.skip_existing,
+      .out = flags.out,
+      .force = flags.force,
+      .strict = flags.strict};
   requireUse(flags.environment, request.channels);
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
   context.interrupted = flags.skip_existing ? "interrupted; the same command goes on"
@@ -137,6 +140,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       ->type_name("NAME");
   command
       ->add_option("--cameras", flags->cameras, "test, train, all, names or patterns; see beam help frames")
+      ->default_str("test, or all where none is held out")
       ->type_name("LIST");
   command->add_option("--frames", flags->frames, kSolvedFramesHelp)->type_name("LIST");
   command
@@ -151,15 +155,18 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       ->type_name("NAME");
   command->add_flag("--layers", flags->layers,
                     "All channels of a camera and frame as layers of one linear EXR file, "
-                    "OUT/layers/CAMERA/FRAME.exr; a mesh stays a file");
+                    "OUT/layers/CAMERA/FRAME.exr, which holds the channels of this call alone; a mesh "
+                    "stays a file");
   command->add_flag("--skip-existing", flags->skip_existing,
                     "Leave files that this command wrote from the same content as they are");
   command->add_option("--out", flags->out, "Folder for the pictures")->required()->type_name("FOLDER");
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
-  command->callback(
-      [flags, &context] { context.action = [flags, &context] { return runRender(*flags, context); }; });
+  command->callback([flags, &context, cameras = command->get_option("--cameras")] {
+    flags->names_cameras = cameras->count() > 0;
+    context.action = [flags, &context] { return runRender(*flags, context); };
+  });
 }
 
 void addExportCommand(CLI::App& app, CommandContext& context) {

@@ -161,6 +161,8 @@ int runProject(Project project, const RunFlags& flags, const std::string& comman
   RunRequest request{.stage = flags.stage, .until = flags.until, .every = flags.every};
   if (!isAllFrames(flags.frames)) request.frames = parseFrameList(flags.frames, project.capture().frames);
   if (flags.dry_run) return tellPlan(project, request, flags, command, context.console);
+  if (const std::string remark = request.frames.empty() ? "" : remarkOfRun(project, request); !remark.empty())
+    context.console.warning(remark);
   makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
   std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   project.save();

@@ -108,6 +108,28 @@ std::vector<std::string> goneOf(const Project& project, const DiskUse& use, cons
   return gone.words();
 }
 
+std::map<std::string, std::vector<std::string>> unsolvedBy(const Project& project, const DiskUse& use) {
+  std::set<std::pair<std::string, std::string>> stay, go;
+  for (const ResultUse& r : use.results)
+    if (!r.step.empty()) (r.in_force ? stay : go).emplace(r.step, r.frame);
+  std::map<std::string, std::set<std::string>> by_stage;
+  const std::vector<std::string>& frames = project.capture().frames;
+  for (const StageInfo& info : project.setup().stages.infos()) {
+    for (const StepInfo& step : info.steps) {
+      const StepId id(info.id, step.id);
+      for (std::int32_t f = 0; step.per_frame && f < static_cast<std::int32_t>(frames.size()); ++f) {
+        const std::string& name = frames[static_cast<std::size_t>(f)];
+        const std::pair place(id.text(), name);
+        if (go.contains(place) && !stay.contains(place) && project.applies(id, FrameIndex{f}))
+          by_stage[info.id].insert(name);
+      }
+    }
+  }
+  std::map<std::string, std::vector<std::string>> unsolved;
+  for (const auto& [stage, names] : by_stage) unsolved[stage].assign(names.begin(), names.end());
+  return unsolved;
+}
+
 // A run that stands between two steps holds none for a moment: what it then misses, it says.
 void requireIdle(const Project& project) {
   const ResultStore& store = project.store();
@@ -180,6 +202,7 @@ CleanPlan planClean(const Project& project, Progress& progress) {
   CleanPlan plan;
   plan.use = diskUse(project, progress);
   requireReadable(plan.use.unreadable);
+  plan.unsolved = unsolvedBy(project, plan.use);
   plan.gone = goneOf(project, plan.use, progress);
   const ResultStore& store = project.store();
   const bool all_told = std::all_of(plan.use.stages.begin(), plan.use.stages.end(),

@@ -5,7 +5,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/base/hash.h"
@@ -26,6 +28,8 @@ struct CleanPlan {
   // What results that go were made of and the capture does not have now, in words: "the picture
   // cam00/000.png", "the camera cam05". Away for the moment, perhaps: `accept` decides.
   std::vector<std::string> gone;
+  // By stage, the frames of which a step is pending whose last results go: what is drawn and exported now.
+  std::map<std::string, std::vector<std::string>> unsolved;
 
   // Of the results that go, half-built folders and quarantine/; failures and leases are some bytes.
   std::uint64_t freedBytes() const;

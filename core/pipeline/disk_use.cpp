@@ -100,9 +100,13 @@ std::map<Digest, Found> readRecords(const ResultStore& store, Progress& progress
   const std::vector<Digest> keys = store.keys();
   progress.expect(static_cast<std::int64_t>(keys.size()), "results");
   for (const Digest& key : keys) {
-    Found result{{key, {}, bytesBelow(store.folderOf(key))}, {}};
+    Found result;
+    result.use.key = key;
+    result.use.bytes = bytesBelow(store.folderOf(key));
     if (const std::optional<ResultRecord> record = store.record(key)) {
       result.use.stage = record->ingredients.step.stage();
+      result.use.step = record->ingredients.step.text();
+      if (!record->lead) result.use.frame = record->frame;
       for (const auto& [name, read] : namedResults(record->ingredients)) result.made_from.push_back(read);
     }
     found.emplace(key, std::move(result));

@@ -28,7 +28,8 @@ struct DiskAmount {
 
 struct ResultUse {
   Digest key;
-  std::string stage;  // empty: its record cannot be read
+  std::string stage;        // empty: its record cannot be read
+  std::string step, frame;  // of the record; a lead of a take has no frame here, for it is nobody's own
   std::uint64_t bytes = 0;
   bool in_force = false;
 };

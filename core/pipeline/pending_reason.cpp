@@ -132,7 +132,12 @@ void PendingReasons::addParameters(const KeyIngredients& was, const KeyIngredien
     const auto plain = defaults.find(name);
     return plain == defaults.end() ? std::string("unknown") : plain->second;
   };
+  const auto inOneAlone = [&](const std::string& name) {
+    return was.parameters.contains(name) != now.parameters.contains(name);
+  };
   for (const std::string& name : namesOf(was.parameters, now.parameters)) {
+    // Of a first frame and a later one other settings count: one that is missing need not have its default.
+    if (was.later != now.later && inOneAlone(name)) continue;
     const std::string before = valueIn(was.parameters, name), after = valueIn(now.parameters, name);
     if (before != after) addOnce({changeText(name, before, after)}, reasons);
   }

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "core/base/count_text.h"
+#include "core/base/word_list.h"
 #include "core/pipeline/pending_reason.h"
+#include "core/scene/frame_list.h"
 
 namespace beam {
 namespace {
@@ -33,11 +35,12 @@ std::string frameName(const Project& project, FrameIndex frame) {
 }
 
 // Why a step is not for some frames of their takes; see applies().
-const char* whyNotNeeded(const StepInfo& step) {
+const char* whyNotNeeded(const Project& project, const StepInfo& step) {
   switch (step.frames) {
     case Frames::FirstOfTake:
       return "built on the frame before";
     case Frames::InTakes:
+      if (project.takes().empty()) return "in no take yet, a run makes takes";
       return "solved alone, in no take";
     case Frames::Every:
       break;
@@ -59,7 +62,7 @@ std::string stepText(const Project& project, const StepId& id, const StepInfo& s
     std::string which =
         counted ? countText(names.size(), "frame") : fmt::format("{}", fmt::join(names, ", "));
     if (all) which = names.size() == 1 ? "the frame" : "all frames";
-    if (not_needed) which += fmt::format(": {}", whyNotNeeded(step));
+    if (not_needed) which += fmt::format(": {}", whyNotNeeded(project, step));
     text += fmt::format("{}{} {}", text.empty() ? "" : "; ", toText(state),
                         counted ? fmt::format("({})", which) : which);
   }
@@ -114,20 +117,24 @@ class Reasons {
 
 // A line for each cause, with the frames it is about where not all that are pending have it.
 std::string reasonsText(const Project& project, const StepId& id, const StepInfo& step, Reasons& reasons) {
-  std::map<std::vector<std::string>, std::vector<std::string>> frames_by_reasons;
+  struct Frames {
+    std::vector<std::string> names;
+    std::vector<int> positions;
+  };
+  std::map<std::vector<std::string>, Frames> frames_by_reasons;
   for (const FrameIndex frame : framesOf(project, step)) {
-    if (project.state(id, frame) == StepState::Pending)
-      frames_by_reasons[reasons.of(id, frame)].push_back(frameName(project, frame));
+    if (project.state(id, frame) != StepState::Pending) continue;
+    Frames& frames = frames_by_reasons[reasons.of(id, frame)];
+    frames.names.push_back(frameName(project, frame));
+    frames.positions.push_back(frame.value);
   }
   std::string text;
   for (const auto& [why, frames] : frames_by_reasons) {
     if (why.empty()) continue;
     const bool some = frames_by_reasons.size() > 1;
-    const std::string more = frames.size() > 1 ? fmt::format(" to {}", frames.back()) : "";
-    text +=
-        fmt::format("    because {}{}\n", fmt::join(why, ", "),
-                    some ? fmt::format(" ({}, {}{})", countText(frames.size(), "frame"), frames.front(), more)
-                         : std::string());
+    const std::string of = fmt::format(" ({} {})", nounText(frames.names.size(), "frame"),
+                                       shortList(frameRanges(frames.names, frames.positions)));
+    text += fmt::format("    because {}{}\n", fmt::join(why, ", "), some ? of : std::string());
   }
   return text;
 }

@@ -105,6 +105,16 @@ std::string totalText(const RunEstimate& e) {
                                           "runs on this machine"));
 }
 
+constexpr const char* kLeavesTake =
+    "a frame of a take is solved alone here, not from the frame before it: to keep it in its take, name the "
+    "take's first frames too";
+
+bool leavesTake(const Project& project, const Project& arranged, const RunPlan& plan) {
+  return std::any_of(plan.turns.begin(), plan.turns.end(), [&](const Turn& turn) {
+    return project.takeOf(turn.frame).before(turn.frame) && !arranged.takeOf(turn.frame).before(turn.frame);
+  });
+}
+
 // What of the table may puzzle.
 std::vector<std::string> remarksOf(const RunEstimate& e) {
   std::vector<std::string> remarks;
@@ -114,10 +124,7 @@ std::vector<std::string> remarksOf(const RunEstimate& e) {
   if (led)
     remarks.emplace_back(
         "more results than frames: a take begins with frames of the take before, which it solves for itself");
-  if (e.leaves_take)
-    remarks.emplace_back(
-        "a frame of a take is solved alone here, not from the frame before it: to keep it in its take, name "
-        "the take's first frames too");
+  if (e.leaves_take) remarks.emplace_back(kLeavesTake);
   return remarks;
 }
 
@@ -136,19 +143,24 @@ RunEstimate estimateRun(const Project& project, const RunRequest& request, const
       estimator.step(step, take, turn.frame, !turn.lead());
   }
   RunEstimate out = estimator.finish(plan);
-  out.leaves_take = std::any_of(plan.turns.begin(), plan.turns.end(), [&](const Turn& turn) {
-    return project.takeOf(turn.frame).before(turn.frame) && !sketch.takeOf(turn.frame).before(turn.frame);
-  });
+  out.leaves_take = leavesTake(project, sketch, plan);
   return out;
+}
+
+std::string remarkOfRun(const Project& project, const RunRequest& request) {
+  Project sketch = project.sketch();
+  makeRunPlan(sketch, request);
+  arrangeTakes(sketch, request);
+  return leavesTake(project, sketch, makeRunPlan(sketch, request)) ? kLeavesTake : "";
 }
 
 std::string toText(const RunEstimate& estimate) {
   std::size_t widest = 4;
   for (const StepEstimate& step : estimate.steps) widest = std::max(widest, step.step.text().size());
-  std::string text = fmt::format("{:<{}}    to do  of all  {:<18}  frames to do\n", "step", widest, "time");
+  std::string text = fmt::format("{:<{}}    to do  of all  {:<20}  frames to do\n", "step", widest, "time");
   for (const StepEstimate& step : estimate.steps) {
     if (step.total == 0) continue;
-    std::string line = fmt::format("{:<{}}  {:>7}  {:>6}  {:<18}  {}", step.step.text(), widest, step.missing,
+    std::string line = fmt::format("{:<{}}  {:>7}  {:>6}  {:<20}  {}", step.step.text(), widest, step.missing,
                                    step.total, timeText(step), framesText(step));
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }

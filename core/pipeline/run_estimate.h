@@ -32,6 +32,10 @@ struct RunEstimate {
 // the input files of every frame, so not for the window's thread. Throws like makeRunPlan.
 RunEstimate estimateRun(const Project& project, const RunRequest& request, const StepTimes& times);
 
+// What a person should know before the run of named frames begins: that it takes one out of its take; empty:
+// nothing. Throws like makeRunPlan.
+std::string remarkOfRun(const Project& project, const RunRequest& request);
+
 // What `run --dry-run` says: a line a step with what is missing of it and about how long that takes, then all
 // of it together.
 std::string toText(const RunEstimate& estimate);

@@ -128,6 +128,20 @@ std::vector<FrameIndex> leftOutOf(const Project& project, const WantedResults& w
 
 }  // namespace
 
+std::string LastSolved::leftOutText() const {
+  std::vector<std::string> names;
+  std::vector<int> positions;
+  for (const FrameIndex frame : left_out) {
+    names.push_back(project.capture().frames[static_cast<std::size_t>(frame.value)]);
+    positions.push_back(frame.value);
+  }
+  return fmt::format(
+      "\"{}\": {} {} left out: solved with other settings, or in another take, than the frames that are "
+      "used; beam run it to solve all of them alike",
+      project.folder().string(), nounText(names.size(), "frame"),
+      fmt::format("{} {}", shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are")));
+}
+
 void LastSolved::tell() const {
   if (!changes.empty()) {
     logWarning(
@@ -135,24 +149,17 @@ void LastSolved::tell() const {
         "the frames anew; --strict refuses",
         project.folder().string(), shortList(changes));
   }
-  if (left_out.empty()) return;
-  std::vector<std::string> names;
-  std::vector<int> positions;
-  for (const FrameIndex frame : left_out) {
-    names.push_back(project.capture().frames[static_cast<std::size_t>(frame.value)]);
-    positions.push_back(frame.value);
-  }
-  logWarning(
-      "\"{}\": {} {} left out: solved with other settings, or in another take, than the frames that are "
-      "used; beam run it to solve all of them alike",
-      project.folder().string(), nounText(names.size(), "frame"),
-      fmt::format("{} {}", shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are")));
+  if (!left_out.empty()) logWarning("{}; --strict refuses", leftOutText());
 }
 
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
   if (project.withoutCapture()) return {project, {}};
   LastSolved last = lastThatServes(project, wanted, progress);
   if (isAllFrames(wanted.frames)) last.left_out = leftOutOf(last.project, wanted, progress);
+  if (wanted.strict && !last.left_out.empty()) {
+    throw Error(Error::Kind::Data, fmt::format("{}, name the --frames that are wanted, or leave out --strict",
+                                               last.leftOutText()));
+  }
   return last;
 }
 

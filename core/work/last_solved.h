@@ -27,6 +27,7 @@ struct LastSolved {
   // Where all were wanted: frames that it has no Gaussians of, though other settings or takes have.
   std::vector<FrameIndex> left_out = {};
 
+  std::string leftOutText() const;  // a sentence of left_out, which has some
   // Logs a warning that names what changed, where something did, and one of what is left out; once nothing
   // else is refused.
   void tell() const;

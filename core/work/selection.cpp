@@ -44,6 +44,12 @@ bool isChosen(const View& view, const std::string& word) {
 
 }  // namespace
 
+std::string usualCameras(const CaptureSet& capture) {
+  const bool some = std::any_of(capture.views.begin(), capture.views.end(),
+                                [](const View& view) { return view.split == Split::Test; });
+  return some ? "test" : "all";
+}
+
 std::vector<View> selectViews(const std::string& words, const CaptureSet& capture) {
   std::vector<View> chosen;
   std::set<std::string> names;

@@ -108,10 +108,29 @@ TEST_F(Clean, WhatOfTheCaptureIsAwayCostsNothing) {
   EXPECT_EQ(filesIn(mine / "results"), before);
 }
 
+TEST_F(Clean, RefusesToRemoveTheOnlyResultsOfAFrame) {
+  // Both frames solved; one of them anew with other settings.
+  ASSERT_EQ(beam(Words{"process", SampleHouse::capture().string(), "--out", project().string(), "--until",
+                       "surface"} +
+                 tinyTake())
+                .code,
+            0);
+  const auto before = filesIn(project() / "results");
+  ASSERT_EQ(
+      beam({"run", project().string(), "--until", "surface", "--frames", "0", "--set", "surface.cap=300"})
+          .code,
+      0);
+  const Said said = beam({"clean", project().string()});
+  EXPECT_EQ(said.code, 2) << said.out;
+  EXPECT_THAT(said.err, AllOf(HasSubstr("surface of frame 000001"), HasSubstr("--force")));
+  for (const auto& [name, text] : before) EXPECT_TRUE(fs::exists(project() / "results" / name)) << name;
+}
+
 TEST_F(Clean, RefusesToRemoveTheOnlyResultsThatThereAre) {
   ASSERT_EQ(beam({"run", only().string(), "--until", "capture", "--set", "surface.iterations=77"}).code, 0);
   const auto before = filesIn(only() / "results");
-  EXPECT_THAT(beam({"clean", only().string(), "--dry-run"}).err, HasSubstr("no result of"));
+  EXPECT_THAT(beam({"clean", only().string(), "--dry-run"}).err,
+              HasSubstr("no result with the settings in force"));
   const Said said = beam({"clean", only().string()});
   EXPECT_EQ(said.code, 2);
   EXPECT_THAT(said.err, AllOf(HasSubstr("surface"), HasSubstr("--force")));
