@@ -23,7 +23,7 @@ const std::vector<ExitCodeInfo>& exitCodes() {
       {exitCode(Kind::Storage), "reading or writing failed in the file system",
        "look at the disk and the rights of the file that is named"},
       {kInterrupted, "interrupted by SIGINT, SIGTERM or SIGHUP; what is finished is kept",
-       "the same command goes on where it stopped"},
+       "the same command goes on where it stopped; of sample the folder is removed first"},
   };
   return all;
 }

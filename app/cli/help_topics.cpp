@@ -283,7 +283,8 @@ std::string settingsText() {
 std::string jsonText() {
   HelpPage page(34);
   page.paragraph(
-      "What --json prints on standard output and --json-file writes. An object begins with written_by, "
+      "What --json prints on standard output and --json-file writes. An object begins with "
+      "written_by.program, "
       "the command. Names that are data are shown as *, elements of a list as []; a key that has nothing "
       "to say is left out. Further keys may come.");
   page.blank();

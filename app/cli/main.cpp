@@ -61,6 +61,16 @@ std::string typedHelp(const CLI::App& app) {
   return typed.empty() ? helpText(app) : typedHelp(*typed.front());
 }
 
+// An unset variable of a script, as a rule: never the same as a flag that was not given.
+void requireNoEmptyWord(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& word : option->results())
+      if (word.empty())
+        throw Error(Error::Kind::Usage,
+                    fmt::format("{} is empty; expected {}", option->get_name(), option->get_type_name()));
+  }
+}
+
 int parseAndRun(int argc, char** argv, CommandContext& context) {
   Console& console = context.console;
   CLI::App app("BEAM Studio: multi-view video in, relightable Gaussians out", "beam");
@@ -78,6 +88,7 @@ int parseAndRun(int argc, char** argv, CommandContext& context) {
     if (e.get_exit_code() == 0) return console.print(typedHelp(app)), kDone;
     throw Error(Error::Kind::Usage, parseErrorText(app, e));
   }
+  for (const CLI::App* command : app.get_subcommands()) requireNoEmptyWord(*command);
   console.setQuiet(flags.quiet);
   console.setVerbose(flags.verbose);
   if (flags.version) return console.print(versionWords(context.services, flags.verbose)), kDone;

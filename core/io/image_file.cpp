@@ -79,11 +79,24 @@ void checkSize(const ImageSize& s, const Bytes& b, const std::filesystem::path& 
   }
 }
 
-// Whether the chunks of a PNG follow one another up to its end chunk.
-bool pngEnds(const Bytes& b) {
+// A chunk that pixels are made of, whose checksum (of type and data) decoders insist on; of the others they
+// only complain.
+bool isBroken(const Bytes& b, std::size_t chunk, std::uint64_t length) {
+  const bool critical = (at(b, chunk + 4) & 0x20) == 0;  // PNG specification 5.4: an upper-case letter
+  const auto* type = reinterpret_cast<const unsigned char*>(b.data() + chunk + 4);
+  return critical && ::crc32_z(0, type, length + 4) != big32(b, chunk + 8 + length);
+}
+
+// Whether the chunks of a PNG follow one another up to its end chunk. Throws Error{Data} for a broken one,
+// before the decoder prints of it.
+bool pngEnds(const Bytes& b, const std::filesystem::path& path) {
   for (std::size_t i = 8; b.size() - i >= 12;) {
     const std::uint64_t length = big32(b, i);
     if (length > b.size() - i - 12) return false;
+    if (isBroken(b, i, length)) {
+      bad(path,
+          fmt::format("the picture cannot be decoded; the file is damaged near byte {}, copy it again", i));
+    }
     if (std::memcmp(&b[i + 4], "IEND", 4) == 0) return true;
     i += length + 12;
   }
@@ -114,7 +127,7 @@ bool jpegEnds(const Bytes& b) {
 // Decoders hand out half a picture for a truncated file: the end must be there.
 void checkEnd(const Bytes& b, const std::filesystem::path& path) {
   const bool png = isPng(b);
-  if (png ? pngEnds(b) : jpegEnds(b)) return;
+  if (png ? pngEnds(b, path) : jpegEnds(b)) return;
   bad(path, fmt::format("expected the end of a {} picture, found none; the file is truncated, copy it again",
                         png ? "PNG" : "JPEG"));
 }

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/io/file.h"
+#include "core/io/image_file.h"
 #include "core/pipeline/input_digests.h"
 #include "core/pipeline/project_document.h"
 #include "core/pipeline/stage_registry.h"
@@ -61,9 +62,11 @@ class GoneInputs {
 
   void add(const ResultRecord& record) {
     for (const auto& [picture, digest] : record.pictures) {
-      // A capture without files names the view.
-      if (!views_.contains(picture) && !isThere(picture))
+      if (views_.contains(picture)) continue;  // a capture without files
+      if (!isThere(picture))
         gone_.insert(fmt::format("the picture {}", picture));
+      else if (!isWhole(picture) && digestNow(picture) != digest)
+        gone_.insert(fmt::format("the picture {} as it was (it is damaged)", picture));
     }
     const StepShown shown = shownOf(project_.setup().stages, record.ingredients.step);
     if (!shown.cameras_file.empty()) addCameras(project_.store().folderOf(record.key) / shown.cameras_file);
@@ -86,14 +89,34 @@ class GoneInputs {
   bool isThere(const std::string& picture) {
     const auto [known, is_new] = there_.emplace(picture, false);
     std::error_code out_of_reach;
-    if (is_new) known->second = fs::exists(folder_ / picture, out_of_reach) || out_of_reach;
+    if (is_new) known->second = fs::is_regular_file(folder_ / picture, out_of_reach);
     return known->second;
+  }
+
+  // Half copied, it is damaged for the moment.
+  bool isWhole(const std::string& picture) {
+    const auto [known, is_new] = whole_.emplace(picture, true);
+    if (!is_new) return known->second;
+    try {
+      checkImageFile(folder_ / picture);
+    } catch (const Error&) {
+      known->second = false;
+    }
+    return known->second;
+  }
+
+  std::string digestNow(const std::string& picture) const {
+    try {
+      return project_.inputs().file(folder_ / picture).hex();
+    } catch (const Error&) {
+      return {};
+    }
   }
 
   const Project& project_;
   fs::path folder_;
   std::set<std::string> views_, gone_;
-  std::map<std::string, bool> there_;
+  std::map<std::string, bool> there_, whole_;
   bool points_ = false;
 };
 

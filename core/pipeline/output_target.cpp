@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/io/capture_reader.h"
 #include "core/io/written_by.h"
+#include "core/pipeline/project.h"
 #include "core/pipeline/project_history.h"
 
 namespace beam {
@@ -74,7 +75,31 @@ void requireOwn(const fs::path& file, const OutputRule& rule) {
                   file.string(), rule.command));
 }
 
+void requireNoInput(const fs::path& folder, const OutputRule& rule) {
+  if (!rule.inputs.contains(resolved(folder))) return;
+  throw Error(Error::Kind::Usage,
+              fmt::format("\"{}\" holds photographs of the capture, which are never written over; choose "
+                          "another place",
+                          folder.string()));
+}
+
 }  // namespace
+
+std::set<fs::path> inputFolders(const Project& project) {
+  std::set<fs::path> named, folders;
+  const CaptureSet& capture = project.capture();
+  for (std::size_t v = 0; v < capture.views.size(); ++v) {
+    for (std::size_t f = 0; f < capture.frames.size(); ++f) {
+      const ViewIndex view{static_cast<std::int32_t>(v)};
+      const FrameIndex frame{static_cast<std::int32_t>(f)};
+      if (!capture.source->has(view, frame)) continue;
+      for (const std::string& file : capture.source->files(view, frame))
+        named.insert(fs::path(file).parent_path());
+    }
+  }
+  for (const fs::path& folder : named) folders.insert(resolved(folder));
+  return folders;
+}
 
 void requireOutside(const fs::path& place) {
   if (place.empty()) {
@@ -101,11 +126,13 @@ void requireFileTarget(const fs::path& file, const OutputRule& rule) {
 void requireFolderTarget(const fs::path& folder, std::span<const fs::path> files, const OutputRule& rule) {
   requireOutside(folder);
   requireFolder(folder);
+  requireNoInput(folder, rule);
   std::set<fs::path> below;
   for (const fs::path& file : files) {
     const fs::path place = (folder / file).parent_path();
     if (below.insert(place).second && place != folder) {
       requireOutside(place);
+      requireNoInput(place, rule);
       requireFolder(place, Making::Later);
     }
     requireOwn(folder / file, rule);

@@ -102,6 +102,8 @@ std::string kindInWords(const fs::path& path) {
     return fmt::format("is a capture: make a project of it with beam process \"{}\" --out Name.beam",
                        path.string());
   }
+  if (!fs::is_directory(path, failed) && !fs::is_regular_file(path, failed))
+    return "is no regular file but a pipe or a device";
   return fs::is_directory(path, failed)
              ? "is a folder with neither a project nor a capture in it: see beam help captures"
              : fileInWords(path);

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
+#include <limits>
 #include <random>
 #include <thread>
 #include <utility>
@@ -47,10 +49,24 @@ void readCapture(const Json& j, ProjectDocument& document) {
   }
 }
 
+// What has no members, null too, would count as an empty one.
+void require(bool is_of_type, const char* what, const char* type) {
+  if (!is_of_type) throw Error(Error::Kind::Data, fmt::format("{}: expected {}", what, type));
+}
+
+int wholeNumber(const Json& j, const char* what) {
+  const bool fits = j.is_number_integer() && j.get<std::int64_t>() >= 0 &&
+                    j.get<std::int64_t>() <= std::numeric_limits<int>::max();
+  require(fits, what, "a whole number, 0 or more");
+  return j.get<int>();
+}
+
 void readTakes(const Json& j, ProjectDocument& document) {
+  require(j.is_array(), "takes", "a list");
   for (const Json& take : j) {
     const SavedTake read{take.at("first").get<std::string>(), take.at("last").get<std::string>(),
-                         take.at("step").get<int>(), take.value("lead", 0)};
+                         wholeNumber(take.at("step"), "step of a take"),
+                         take.contains("lead") ? wholeNumber(take["lead"], "lead of a take") : 0};
     if (read.step < 1 || read.lead < 0) {
       throw Error(
           Error::Kind::Data,
@@ -147,6 +163,7 @@ ProjectDocument documentOf(Json j) {
   if (j.contains("up")) document.up = parseUpAxis(j["up"].get<std::string>());
   if (j.contains("world")) readWorld(j["world"], document);
   document.preset = j.at("preset").get<std::string>();
+  require(j.at("settings").is_object(), "settings", "an object");
   for (const auto& [key, value] : j.at("settings").items())
     document.settings[key] = parseFieldValue(value.dump());
   if (j.contains("takes")) readTakes(j["takes"], document);

@@ -43,6 +43,7 @@ struct FrameLabel {
 struct FrameContent {
   bool gaussians = false, materials = false, mesh = false;
   bool interpolated = false;  // `gaussians` would be made from the frames beside it
+  bool unfinished = false;    // they are of a fit that is still to be refined: its run was cut
 };
 
 // How the Gaussians are meant to be drawn.

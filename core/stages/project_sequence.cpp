@@ -90,7 +90,9 @@ class ProjectSequence final : public GaussianSequence {
   FrameContent content(FrameIndex frame) const override {
     FrameContent c;
     c.materials = isDone(kMaterialsStep, frame);
-    c.gaussians = c.materials || isDone(kRefineStep, frame) || isDone(kFitStep, frame);
+    const bool refined = isDone(kRefineStep, frame);
+    c.unfinished = !c.materials && !refined && isDone(kFitStep, frame) && isFor(kRefineStep, frame);
+    c.gaussians = c.materials || refined || isDone(kFitStep, frame);
     c.mesh = isDone(kMeshStep, frame);
     if (!c.gaussians && shows_ != Shows::Solved) {
       if (const std::optional<SolvedPair> pair = solvedPair(frame)) {
@@ -191,6 +193,11 @@ class ProjectSequence final : public GaussianSequence {
     if (!steps_.contains(step)) return false;
     std::lock_guard lock(mutex_);
     return project_.state(step, frame) == StepState::Done;
+  }
+  bool isFor(const StepId& step, FrameIndex frame) const {
+    if (!steps_.contains(step)) return false;
+    std::lock_guard lock(mutex_);
+    return project_.applies(step, frame);
   }
   Take takeOf(FrameIndex frame) const {
     std::lock_guard lock(mutex_);

@@ -103,7 +103,7 @@ ExportOutcome exportFrames(const ExportRequest& request, Progress& progress) {
   for (const FrameIndex frame : frames)
     labels.push_back(sequence->frames()[static_cast<std::size_t>(frame.value)]);
   const std::vector<std::filesystem::path> files = filesOf(labels, sequence->frames(), format);
-  requireFolderTarget(request.out, files, {kCommand, request.force});
+  requireFolderTarget(request.out, files, {kCommand, request.force, inputFolders(project)});
   last.tell();
   ExportOutcome outcome;
   progress.expect(static_cast<std::int64_t>(frames.size()));

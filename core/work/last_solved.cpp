@@ -126,20 +126,47 @@ std::vector<FrameIndex> leftOutOf(const Project& project, const WantedResults& w
   return {left_out.begin(), left_out.end()};
 }
 
-}  // namespace
-
-std::string LastSolved::leftOutText() const {
+// "P.beam": frames 000001-000002 are
+std::string framesAre(const Project& project, const std::vector<FrameIndex>& frames) {
   std::vector<std::string> names;
   std::vector<int> positions;
-  for (const FrameIndex frame : left_out) {
+  for (const FrameIndex frame : frames) {
     names.push_back(project.capture().frames[static_cast<std::size_t>(frame.value)]);
     positions.push_back(frame.value);
   }
+  return fmt::format("\"{}\": {} {} {}", project.folder().string(), nounText(names.size(), "frame"),
+                     shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are"));
+}
+
+std::vector<FrameIndex> unfinishedOf(const Project& project, const WantedResults& wanted,
+                                     const Progress& progress) {
+  const auto sequence = sequenceOf(project, Shows::Solved);
+  std::vector<FrameIndex> unfinished;
+  for (const FrameIndex frame : framesIn(project, wanted.frames)) {
+    progress.check();
+    if (sequence->content(frame).unfinished) unfinished.push_back(frame);
+  }
+  return unfinished;
+}
+
+void requireStrictly(bool none, const std::string& text) {
+  if (none) return;
+  throw Error(Error::Kind::Data,
+              fmt::format("{}, name the --frames that are wanted, or leave out --strict", text));
+}
+
+}  // namespace
+
+std::string LastSolved::leftOutText() const {
   return fmt::format(
-      "\"{}\": {} {} left out: solved with other settings, or in another take, than the frames that are "
-      "used; beam run it to solve all of them alike",
-      project.folder().string(), nounText(names.size(), "frame"),
-      fmt::format("{} {}", shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are")));
+      "{} left out: solved with other settings, or in another take, than the frames that are used; beam run "
+      "it to solve all of them alike",
+      framesAre(project, left_out));
+}
+
+std::string LastSolved::unfinishedText() const {
+  return fmt::format("{} fitted and not refined yet, for a run was cut: beam run it to finish them",
+                     framesAre(project, unfinished));
 }
 
 void LastSolved::tell() const {
@@ -150,15 +177,17 @@ void LastSolved::tell() const {
         project.folder().string(), shortList(changes));
   }
   if (!left_out.empty()) logWarning("{}; --strict refuses", leftOutText());
+  if (!unfinished.empty()) logWarning("{}; --strict refuses", unfinishedText());
 }
 
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
   if (project.withoutCapture()) return {project, {}};
   LastSolved last = lastThatServes(project, wanted, progress);
   if (isAllFrames(wanted.frames)) last.left_out = leftOutOf(last.project, wanted, progress);
-  if (wanted.strict && !last.left_out.empty()) {
-    throw Error(Error::Kind::Data, fmt::format("{}, name the --frames that are wanted, or leave out --strict",
-                                               last.leftOutText()));
+  last.unfinished = unfinishedOf(last.project, wanted, progress);
+  if (wanted.strict) {
+    requireStrictly(last.left_out.empty(), last.leftOutText());
+    requireStrictly(last.unfinished.empty(), last.unfinishedText());
   }
   return last;
 }

@@ -27,7 +27,11 @@ struct LastSolved {
   // Where all were wanted: frames that it has no Gaussians of, though other settings or takes have.
   std::vector<FrameIndex> left_out = {};
 
-  std::string leftOutText() const;  // a sentence of left_out, which has some
+  // Of those that are used: fitted and not refined, for the run was cut there.
+  std::vector<FrameIndex> unfinished = {};
+
+  std::string leftOutText() const;     // a sentence of left_out, which has some
+  std::string unfinishedText() const;  // likewise
   // Logs a warning that names what changed, where something did, and one of what is left out; once nothing
   // else is refused.
   void tell() const;

@@ -43,7 +43,8 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   pictures.out = request.out;
   pictures.written_by = writerOf(kCommand);
   requireDrawable(pictures, renderer.abilities());
-  requireFolderTarget(request.out, channelFiles(*sequence, pictures), {kCommand, request.force});
+  requireFolderTarget(request.out, channelFiles(*sequence, pictures),
+                      {kCommand, request.force, inputFolders(project)});
   last.tell();
   const RenderedFiles files = renderChannels(*sequence, pictures, renderer, progress);
   return {pictures.views.size(), pictures.frames.size(), interpolatedOf(*sequence, pictures.frames),

@@ -94,6 +94,21 @@ TEST_F(Clean, WhatOfTheCaptureIsAwayCostsNothing) {
   };
   expectRefused(fs::path("images") / camera / "000001.png", camera + "/000001.png");
   expectRefused(fs::path("masks") / camera, camera + "/000000.png");
+  // Half copied, or a folder of its name.
+  const fs::path picture = capture / "images" / camera / "000001.png", whole = folder_.path() / "whole.png";
+  fs::rename(picture, whole);
+  for (const bool half : {true, false}) {
+    if (half)
+      std::ofstream(picture, std::ios::binary) << textOf(whole).substr(0, 500);
+    else
+      fs::create_directories(picture);
+    const Said said = beam({"clean", mine.string()});
+    EXPECT_EQ(said.code, 65) << half << said.err;
+    EXPECT_THAT(said.err, HasSubstr(camera + "/000001.png"));
+    EXPECT_EQ(filesIn(mine / "results"), before);
+    fs::remove(picture);
+  }
+  fs::rename(whole, picture);
   EXPECT_EQ(Json::parse(beam({"clean", mine.string(), "--json"}).out)["removed"]["count"], 0);
   // Another capture in its place, with the same names.
   fs::rename(capture, folder_.path() / "first");

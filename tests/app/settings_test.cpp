@@ -75,6 +75,34 @@ TEST_F(Settings, ThatCannotBeAreNamedWithTheirFileAndCanBeMended) {
   expectNamed("nobody", {"--hold-out", "none"});
 }
 
+TEST_F(Settings, OfAnotherTypeAreBrokenAndNotNone) {
+  const fs::path file = fs::path(project()) / "project.json";
+  const std::string good = textOf(file);
+  for (const auto& [key, value] : std::map<std::string, Json>{
+           {"settings", nullptr}, {"takes", nullptr}, {"takes", Json::object()}, {"settings", 3}}) {
+    Json document = Json::parse(good);
+    document[key] = value;
+    std::ofstream(file) << document.dump();
+    const Said said = beam({"status", project()});
+    EXPECT_EQ(said.code, 65) << key << value;
+    EXPECT_THAT(said.err, AllOf(HasSubstr("broken"), HasSubstr(key))) << value;
+  }
+  Json document = Json::parse(good);
+  document["takes"] = {{{"first", "000000"}, {"last", "000001"}, {"step", 4294967297}}};
+  std::ofstream(file) << document.dump();
+  EXPECT_THAT(beam({"status", project()}).err, HasSubstr("step of a take"));
+}
+
+TEST_F(Settings, AnEmptyWordIsNotAFlagThatWasNotGiven) {
+  for (const Words& words :
+       {Words{"render", project(), "--out", at("o"), "--environment", ""}, Words{"stages", "--json-file", ""},
+        Words{"evaluate", project(), "--ground-truth", ""}, Words{"status", ""}}) {
+    const Said said = beam(words);
+    EXPECT_EQ(said.code, 2) << words[0];
+    EXPECT_THAT(said.err, HasSubstr("is empty")) << words[0];
+  }
+}
+
 TEST_F(Settings, ThatARunSavesAreSaid) {
   const Words run = {"run", project(), "--until", "capture", "--set", "surface.cap=500"};
   EXPECT_THAT(beam(run + Words{"--dry-run"}).err, HasSubstr("would be saved: surface.cap 400 → 500"));

@@ -92,6 +92,28 @@ TEST_F(Target, BelowTheFolderThatWasGivenIsLookedAtAsWell) {
   EXPECT_EQ(filesIn(capture), before);
 }
 
+TEST_F(Target, PhotographsOutsideOfTheirCaptureAreNotReplacedWithForceEither) {
+  const fs::path capture = at("capture"), photos = at("photos/rgb");
+  fs::create_directories(capture);
+  fs::create_directories(at("photos"));
+  fs::copy(SampleHouse::capture() / "images", photos, fs::copy_options::recursive);
+  nlohmann::json description = nlohmann::json::parse(textOf(SampleHouse::capture() / "transforms.json"));
+  for (nlohmann::json& frame : description["frames"]) {
+    const std::string path = frame["file_path"];
+    frame["file_path"] = "../photos/rgb/" + path.substr(path.find('/') + 1);
+    frame["mask_path"] = (SampleHouse::capture() / std::string(frame["mask_path"])).string();
+  }
+  put(capture / "transforms.json", description.dump());
+  const Said made =
+      beam(Words{"process", capture.string(), "--out", at("e.beam"), "--until", "surface"} + tiny());
+  ASSERT_EQ(made.code, 0) << made.err;
+  const auto before = filesIn(at("photos"));
+  const Said said = beam({"render", at("e.beam"), "--cameras", "all", "--out", at("photos"), "--force"});
+  EXPECT_EQ(said.code, 2) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("photographs of the capture"));
+  EXPECT_EQ(filesIn(at("photos")), before);
+}
+
 TEST_F(Target, InAProjectThatLostItsDocumentIsRefused) {
   fs::create_directories(at("lost.beam"));
   fs::copy(SolvedHouse::project() / "results", at("lost.beam/results"), fs::copy_options::recursive);

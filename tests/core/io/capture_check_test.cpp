@@ -39,6 +39,18 @@ TEST(CaptureCheck, NamesFileCameraAndFrameOfEachDamagedPicture) {
   EXPECT_THAT(toText(r), HasSubstr("frames: 2 (000003 to 000004)"));
 }
 
+TEST(CaptureCheck, NamesAMaskWithAFlippedByte) {
+  const TempDir dir;
+  put(dir / "dataset.json", kDataset);
+  putPictures(dir.path());
+  std::string bytes = readTextFile(dir / "masks/b/000004.png");
+  const std::size_t pixels = bytes.find("IDAT") + 5;
+  bytes[pixels] = static_cast<char>(bytes[pixels] ^ 0xff);
+  put(dir / "masks/b/000004.png", bytes);
+  EXPECT_THAT(checkPath(dir.path()).warnings,
+              Contains(AllOf(HasSubstr("masks/b/000004.png"), HasSubstr("damaged near byte"))));
+}
+
 TEST(CaptureCheck, SaysInTwoHalvesWhatItSaysAtOnce) {
   const TempDir dir;
   put(dir / "dataset.json", kDataset);

@@ -110,6 +110,23 @@ TEST_F(LastSolvedTest, NamesInOneWarningTheFramesThatOtherSettingsAloneHave) {
   EXPECT_THAT(lastSolved(now, {.frames = "0"}, progress_).left_out, IsEmpty()) << "not asked for";
 }
 
+TEST_F(LastSolvedTest, NamesFramesThatARunLeftUnrefined) {
+  const Project project = solvedStandIn(folder_.path(), {.frames = 3});
+  EXPECT_THAT(lastSolved(project, {}, progress_).unfinished, IsEmpty());
+  for (const StepId& step : {kMaterialsStep, kRefineStep})
+    std::filesystem::remove_all(project.store().folderOf(project.key(step, FrameIndex{1})));
+  const Project cut = Project::open(project.folder(), standInPipeline({.frames = 3}));
+  const LastSolved last = lastSolved(cut, {}, progress_);
+  EXPECT_THAT(last.unfinished, ElementsAre(FrameIndex{1}));
+  last.tell();
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_THAT(warnings_[0],
+              AllOf(HasSubstr("frame 000001 is fitted and not refined"), HasSubstr("--strict")));
+  EXPECT_THAT(messageOf(Error::Kind::Data, [&] { lastSolved(cut, {.strict = true}, progress_); }),
+              HasSubstr("000001"));
+  EXPECT_NO_THROW(lastSolved(cut, {.frames = "0", .strict = true}, progress_));
+}
+
 TEST_F(LastSolvedTest, LeavesOutNoFrameThatNobodySolvedOrAScoutPassed) {
   const Project part = solvedStandIn(folder_.path(), {.frames = 3}, {.frames = {FrameIndex{0}}});
   EXPECT_THAT(lastSolved(part, {}, progress_).left_out, IsEmpty());
