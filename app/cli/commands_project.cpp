@@ -74,15 +74,18 @@ void tellChanges(const Project& before, const Project& project, bool dry_run, Co
     console.info(fmt::format("{}: {}", dry_run ? "would be saved" : "saved", fmt::join(changes, ", ")));
 }
 
-// Where project.json and the capture are not of one another any more.
-void warnOfCapture(const Project& project, Console& console) {
-  if (const std::string change = project.captureChange(); !change.empty()) {
+// Where project.json and the capture are not of one another any more; gives whether the description of the
+// capture differs.
+bool warnOfCapture(const Project& project, Console& console) {
+  const std::string change = project.captureChange();
+  if (!change.empty()) {
     console.warning(
         fmt::format("the capture \"{}\" is not described as it was when the project took it in: {}",
                     project.captureFolder().string(), change));
   }
   for (const std::string& take : takesNotUnderstood(project.document().takes, project.capture().frames))
     console.warning(take);
+  return !change.empty();
 }
 
 std::string statusWords(const Project& project, const DiskUse& use) {
@@ -167,8 +170,7 @@ void addRunCommand(CLI::App& app, CommandContext& context) {
       Project project = Project::open(a->project, context.services.pipeline);
       const Project before = project;
       applyFlags(project, a->project_flags);
-      warnOfCapture(project, context.console);
-      if (!project.captureChange().empty()) project.acceptCaptureChange();
+      if (warnOfCapture(project, context.console)) project.acceptCaptureChange();
       tellChanges(before, project, a->run.dry_run, context.console);
       return runProject(std::move(project), a->run, "run", context);
     };

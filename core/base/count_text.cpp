@@ -2,7 +2,6 @@
 #include "core/base/count_text.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace beam {
 namespace {

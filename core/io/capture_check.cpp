@@ -75,8 +75,7 @@ void warnOfOneColor(const std::string& camera, const std::vector<std::string>& f
   if (frames.empty()) return;
   warnings.push_back(
       fmt::format("camera {}, {} {}: expected {}, found one colour all over: a lens cap, a lost feed or a "
-                  "damaged file? It "
-                  "would be learned as it is: remove {} from the capture",
+                  "damaged file? It would be learned as it is: remove {} from the capture",
                   camera, nounText(frames.size(), "frame"), shortList(frames),
                   frames.size() == 1 ? "a photograph" : "photographs", frames.size() == 1 ? "it" : "them"));
 }
@@ -120,24 +119,17 @@ CameraCheck checkCamera(const CaptureSet& set, std::size_t view, CameraCheck c,
 
 // What a person takes for a picture and no reader of photographs does.
 bool isForeignPicture(const fs::path& file) {
-  static const std::set<std::string> kKinds = {".exr",  ".hdr", ".tif", ".tiff", ".bmp", ".webp", ".avif",
-                                               ".heic", ".jxl", ".jp2", ".dng",  ".cr2", ".cr3",  ".nef",
-                                               ".arw",  ".raw", ".mp4", ".mov",  ".mkv", ".avi"};
-  return kKinds.contains(lowerCase(file.extension().string()));
+  const std::string ending = lowerCase(file.extension().string());
+  const auto has = [&](const std::vector<std::string_view>& endings) {
+    return std::find(endings.begin(), endings.end(), ending) != endings.end();
+  };
+  return isRadianceName(file) || has(unreadPictureEndings()) || has(videoEndings());
 }
 
 // Folders of photographs that hold other pictures too. The capture's own folder has the panorama.
 void warnOfForeignPictures(const CaptureSet& set, const fs::path& capture,
                            std::vector<std::string>& warnings) {
-  std::set<fs::path> folders;
-  for (std::size_t v = 0; v < set.views.size(); ++v) {
-    for (std::size_t f = 0; f < set.frames.size(); ++f) {
-      const ViewIndex view{static_cast<std::int32_t>(v)};
-      const FrameIndex frame{static_cast<std::int32_t>(f)};
-      if (set.source->has(view, frame))
-        folders.insert(fs::path(set.source->files(view, frame).front()).parent_path());
-    }
-  }
+  std::set<fs::path> folders = pictureFolders(set, false);
   folders.erase(capture.lexically_normal());
   for (const fs::path& folder : folders) {
     std::vector<std::string> found;
@@ -236,14 +228,13 @@ void checkPictures(const CaptureSet& set, CheckReport& r, Progress& progress) {
 
 std::string refusalOf(const CheckReport& r) {
   if (r.kind != "capture") return {};
-  constexpr std::ptrdiff_t kLeast = 2;
   const std::ptrdiff_t usable = std::count_if(
       r.cameras.begin(), r.cameras.end(), [](const CameraCheck& c) { return !c.held_out && c.frames > 0; });
-  if (usable >= kLeast) return {};
+  if (usable >= kLeastTrainingCameras) return {};
   return fmt::format(
       "\"{}\" cannot be processed: expected at least {} training cameras with pictures that can be used, "
       "found {}",
-      r.path, kLeast, usable);
+      r.path, kLeastTrainingCameras, usable);
 }
 
 CheckReport checkPath(const fs::path& path, const ImportOptions& options, Progress* progress) {

@@ -130,4 +130,20 @@ std::shared_ptr<const FrameSource> makeFileFrames(PictureTable files, std::vecto
   return std::make_shared<FileFrames>(std::move(files), std::move(views), kind);
 }
 
+std::set<fs::path> pictureFolders(const CaptureSet& capture, bool masks_too) {
+  std::set<fs::path> folders;
+  for (std::size_t v = 0; v < capture.views.size(); ++v) {
+    for (std::size_t f = 0; f < capture.frames.size(); ++f) {
+      const ViewIndex view{static_cast<std::int32_t>(v)};
+      const FrameIndex frame{static_cast<std::int32_t>(f)};
+      if (!capture.source->has(view, frame)) continue;
+      for (const std::string& file : capture.source->files(view, frame)) {
+        folders.insert(fs::path(file).parent_path());
+        if (!masks_too) break;  // the picture comes first
+      }
+    }
+  }
+  return folders;
+}
+
 }  // namespace beam

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,8 @@ void requireCalibratedSize(const View& view, const std::filesystem::path& file, 
                            const char* what);
 
 std::shared_ptr<const FrameSource> makeFileFrames(PictureTable files, std::vector<View> views, MaskKind kind);
+
+// The folders that the capture's pictures lie in, and those of its masks where these are asked for.
+std::set<std::filesystem::path> pictureFolders(const CaptureSet& capture, bool masks_too);
 
 }  // namespace beam

@@ -97,12 +97,12 @@ void dropEmptyCameras(CaptureDescription& d, const fs::path& folder) {
   d.cameras = std::move(kept);
   const auto train = std::count_if(d.cameras.begin(), d.cameras.end(),
                                    [](const auto& c) { return c.split == Split::Train; });
-  if (train < 2) {
+  if (train < kLeastTrainingCameras) {
     const auto held_out = static_cast<std::ptrdiff_t>(d.cameras.size()) - train;
     throw Error(
         Error::Kind::Data,
-        fmt::format("\"{}\": expected pictures (PNG, JPEG) of at least 2 training cameras, found {}{}{}",
-                    folder.string(), train,
+        fmt::format("\"{}\": expected pictures (PNG, JPEG) of at least {} training cameras, found {}{}{}",
+                    folder.string(), kLeastTrainingCameras, train,
                     held_out > 0 ? fmt::format(" beside {} held out", held_out) : std::string(),
                     fs::is_directory(folder / "videos")
                         ? "; videos are not read: take their frames out into images/CAMERA/"

@@ -239,6 +239,18 @@ Image<std::uint8_t> readAlpha(const std::filesystem::path& path) {
   return channelOf(m, 3);
 }
 
+const std::vector<std::string_view>& unreadPictureEndings() {
+  static const std::vector<std::string_view> all = {".tif",  ".tiff", ".bmp", ".webp", ".avif",
+                                                    ".heic", ".jxl",  ".jp2", ".dng",  ".cr2",
+                                                    ".cr3",  ".nef",  ".arw", ".raw"};
+  return all;
+}
+
+const std::vector<std::string_view>& videoEndings() {
+  static const std::vector<std::string_view> all = {".mp4", ".mov", ".mkv", ".avi"};
+  return all;
+}
+
 bool isRadianceName(const std::filesystem::path& path) {
   const std::string extension = lowerCase(path.extension().string());
   return extension == ".exr" || extension == ".hdr" || extension == ".pic";

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -31,6 +32,10 @@ Image<u8vec3> readPhoto(const std::filesystem::path& path);
 // Coverage from a mask picture: its single or first channel; of a picture with alpha, readAlpha.
 Image<std::uint8_t> readMask(const std::filesystem::path& path);
 Image<std::uint8_t> readAlpha(const std::filesystem::path& path);
+
+// Endings, in lower case, of files that a person may take for photographs and no reader here does.
+const std::vector<std::string_view>& unreadPictureEndings();
+const std::vector<std::string_view>& videoEndings();
 
 // Whether readRadiance takes a file of that name.
 bool isRadianceName(const std::filesystem::path& path);

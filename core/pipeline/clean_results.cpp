@@ -44,10 +44,9 @@ void requireReadable(const std::vector<std::string>& unreadable) {
   if (unreadable.empty()) return;
   const std::string more =
       unreadable.size() == 1 ? std::string() : fmt::format(" and {} more", unreadable.size() - 1);
-  throw untold(
-      fmt::format("the picture \"{}\"{} is there and cannot be read; make it readable, or take it "
-                  "out of the capture",
-                  unreadable.front(), more));
+  throw untold(fmt::format(
+      "the picture \"{}\"{} is there and cannot be read; make it readable, or take it out of the capture",
+      unreadable.front(), more));
 }
 
 // Of one capture: what results were made of and it does not have.
@@ -65,7 +64,7 @@ class GoneInputs {
       if (views_.contains(picture)) continue;  // a capture without files
       if (!isThere(picture))
         gone_.insert(fmt::format("the picture {}", picture));
-      else if (!isWhole(picture) && digestNow(picture) != digest)
+      else if (digestNow(picture) != digest && !isWhole(picture))
         gone_.insert(fmt::format("the picture {} as it was (it is damaged)", picture));
     }
     const StepShown shown = shownOf(project_.setup().stages, record.ingredients.step);
@@ -158,10 +157,11 @@ void requireIdle(const Project& project) {
   const ResultStore& store = project.store();
   for (const Digest& key : store.leases()) {
     if (!store.isLeased(key)) continue;
-    throw Error(Error::Kind::Locked,
-                fmt::format("\"{}\" is being worked on: {} computes a result of it; wait until it is done, "
-                            "then clean again",
-                            project.folder().string(), store.leaseHolder(key)));
+    throw Error(
+        Error::Kind::Locked,
+        fmt::format(
+            "\"{}\" is being worked on: {} computes a result of it; wait until it is done, then clean again",
+            project.folder().string(), store.leaseHolder(key)));
   }
 }
 
@@ -246,10 +246,10 @@ CleanPlan cleanResults(const fs::path& folder, std::shared_ptr<const PipelineSet
                        const AcceptPlan& accept) {
   Project project = Project::open(folder, setup);
   if (project.readOnly()) {
-    throw Error(Error::Kind::Storage,
-                fmt::format("\"{}\" is read-only: nothing can be removed from it; make the folder writable "
-                            "first",
-                            folder.string()));
+    throw Error(
+        Error::Kind::Storage,
+        fmt::format("\"{}\" is read-only: nothing can be removed from it; make the folder writable first",
+                    folder.string()));
   }
   requireIdle(project);
   // Photographs are looked at before the lock is taken, which keeps others from starting.

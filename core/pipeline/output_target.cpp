@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/io/capture_pictures.h"
 #include "core/io/capture_reader.h"
 #include "core/io/written_by.h"
 #include "core/pipeline/project.h"
@@ -70,34 +71,25 @@ void requireOwn(const fs::path& file, const OutputRule& rule) {
   if (!dangling && (fs::file_size(file, failed) == 0 || isWrittenBy(file, rule.command))) return;
   throw Error(
       Error::Kind::Usage,
-      fmt::format("\"{}\" is there and was not written by beam {}; choose another name, or replace it "
-                  "with --force",
-                  file.string(), rule.command));
+      fmt::format(
+          "\"{}\" is there and was not written by beam {}; choose another name, or replace it with --force",
+          file.string(), rule.command));
 }
 
 void requireNoInput(const fs::path& folder, const OutputRule& rule) {
   if (!rule.inputs.contains(resolved(folder))) return;
-  throw Error(Error::Kind::Usage,
-              fmt::format("\"{}\" holds photographs of the capture, which are never written over; choose "
-                          "another place",
-                          folder.string()));
+  throw Error(
+      Error::Kind::Usage,
+      fmt::format(
+          "\"{}\" holds photographs of the capture, which are never written over; choose another place",
+          folder.string()));
 }
 
 }  // namespace
 
 std::set<fs::path> inputFolders(const Project& project) {
-  std::set<fs::path> named, folders;
-  const CaptureSet& capture = project.capture();
-  for (std::size_t v = 0; v < capture.views.size(); ++v) {
-    for (std::size_t f = 0; f < capture.frames.size(); ++f) {
-      const ViewIndex view{static_cast<std::int32_t>(v)};
-      const FrameIndex frame{static_cast<std::int32_t>(f)};
-      if (!capture.source->has(view, frame)) continue;
-      for (const std::string& file : capture.source->files(view, frame))
-        named.insert(fs::path(file).parent_path());
-    }
-  }
-  for (const fs::path& folder : named) folders.insert(resolved(folder));
+  std::set<fs::path> folders;
+  for (const fs::path& folder : pictureFolders(project.capture(), true)) folders.insert(resolved(folder));
   return folders;
 }
 

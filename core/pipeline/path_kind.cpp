@@ -56,13 +56,11 @@ struct FileKind {
 // Of files that are not looked into.
 const std::vector<FileKind>& fileKinds() {
   static const std::vector<FileKind> all = {
-      {{".mp4", ".mov", ".mkv", ".avi"},
-       "is a video: expected a folder of photographs, take them out of it first"},
+      {videoEndings(), "is a video: expected a folder of photographs, take them out of it first"},
       {{".png", ".jpg", ".jpeg"},
        "is a PNG or JPEG picture: a photograph is looked at with the folder of its capture, and a panorama "
-       "of "
-       "the light must be .exr or .hdr, which hold how bright lamps are"},
-      {{".tif", ".tiff", ".bmp", ".webp", ".avif", ".heic", ".jxl", ".dng", ".cr2", ".cr3", ".nef", ".arw"},
+       "of the light must be .exr or .hdr, which hold how bright lamps are"},
+      {unreadPictureEndings(),
        "is a picture of a kind that is not read: photographs are PNG or JPEG, panoramas .exr or .hdr"},
       {{".spz", ".sog", ".splat", ".ksplat", ".spx"},
        "is a file of splats of a kind that is not read: turn it into .ply first"},

@@ -57,9 +57,9 @@ std::optional<Digest> keyNamed(const std::string& name) {
   }
 }
 
-// Ascending. Entries with other names are passed over.
 enum class Kind { Folders, Files };
 
+// Ascending. Entries with other names are passed over.
 std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension, Kind kind) {
   std::vector<Digest> found;
   std::error_code failed;

@@ -99,19 +99,33 @@ std::string totalText(const RunEstimate& e) {
   std::string text =
       fmt::format("{} of {} to compute, for {} of {}", e.steps_missing, countText(e.steps_total, "result"),
                   e.frames, countText(e.frames_total, "frame"));
-  return text + (e.measured ? fmt::format(": {}, as measured on this machine",
-                                          aboutText(e.seconds_low, e.seconds_high))
-                            : std::string("; the time is not known yet: each step is measured when it first "
-                                          "runs on this machine"));
+  return text +
+         (e.measured
+              ? fmt::format(": {}, as measured on this machine", aboutText(e.seconds_low, e.seconds_high))
+              : std::string(
+                    "; the time is not known yet: each step is measured when it first runs on this machine"));
 }
 
 constexpr const char* kLeavesTake =
     "a frame of a take is solved alone here, not from the frame before it: to keep it in its take, name the "
     "take's first frames too";
 
-bool leavesTake(const Project& project, const Project& arranged, const RunPlan& plan) {
-  return std::any_of(plan.turns.begin(), plan.turns.end(), [&](const Turn& turn) {
-    return project.takeOf(turn.frame).before(turn.frame) && !arranged.takeOf(turn.frame).before(turn.frame);
+// A copy of the project with the takes that the run would make, and the plan of that run.
+struct Arranged {
+  Arranged(const Project& now, const RunRequest& request) : project(now.sketch()) {
+    makeRunPlan(project, request);  // refuses before takes change
+    arrangeTakes(project, request);
+    plan = makeRunPlan(project, request);
+  }
+
+  Project project;
+  RunPlan plan;
+};
+
+bool leavesTake(const Project& project, const Arranged& arranged) {
+  return std::any_of(arranged.plan.turns.begin(), arranged.plan.turns.end(), [&](const Turn& turn) {
+    return project.takeOf(turn.frame).before(turn.frame) &&
+           !arranged.project.takeOf(turn.frame).before(turn.frame);
   });
 }
 
@@ -131,10 +145,8 @@ std::vector<std::string> remarksOf(const RunEstimate& e) {
 }  // namespace
 
 RunEstimate estimateRun(const Project& project, const RunRequest& request, const StepTimes& times) {
-  Project sketch = project.sketch();
-  makeRunPlan(sketch, request);  // refuses before takes change
-  arrangeTakes(sketch, request);
-  const RunPlan plan = makeRunPlan(sketch, request);
+  const Arranged arranged(project, request);
+  const auto& [sketch, plan] = arranged;
   Estimator estimator(sketch, plan, times);
   for (const StepId& step : plan.project_steps) estimator.step(step, {}, {}, false);
   for (const Turn& turn : plan.turns) {
@@ -143,15 +155,12 @@ RunEstimate estimateRun(const Project& project, const RunRequest& request, const
       estimator.step(step, take, turn.frame, !turn.lead());
   }
   RunEstimate out = estimator.finish(plan);
-  out.leaves_take = leavesTake(project, sketch, plan);
+  out.leaves_take = leavesTake(project, arranged);
   return out;
 }
 
 std::string remarkOfRun(const Project& project, const RunRequest& request) {
-  Project sketch = project.sketch();
-  makeRunPlan(sketch, request);
-  arrangeTakes(sketch, request);
-  return leavesTake(project, sketch, makeRunPlan(sketch, request)) ? kLeavesTake : "";
+  return leavesTake(project, Arranged(project, request)) ? kLeavesTake : "";
 }
 
 std::string toText(const RunEstimate& estimate) {

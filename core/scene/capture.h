@@ -21,6 +21,8 @@ enum class Split {
   Test,  // held out: never used for fitting
 };
 
+inline constexpr int kLeastTrainingCameras = 2;  // of which anything can be solved
+
 struct View {
   std::string name;
   Camera camera;  // of the pictures as stored

@@ -51,10 +51,10 @@ void judgeFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
     if (!problems[i].empty())
       logWarning("{}; camera {} is left out of frame {}", problems[i], capture.views[i].name, name);
   }
-  if (readable < 2 && split == Split::Train) {
-    throw Error(
-        Error::Kind::Data,
-        fmt::format("expected at least 2 readable training pictures of frame {}, found {}", name, readable));
+  if (readable < kLeastTrainingCameras && split == Split::Train) {
+    throw Error(Error::Kind::Data,
+                fmt::format("expected at least {} readable training pictures of frame {}, found {}",
+                            kLeastTrainingCameras, name, readable));
   }
 }
 

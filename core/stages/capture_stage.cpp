@@ -76,9 +76,9 @@ class CaptureStage final : public StageOf<CaptureOptions> {
     }
     int train = 0;
     for (const View& view : c.capture.views) train += view.split == Split::Train;
-    if (train < 2) {
-      throw Error(Error::Kind::Data, fmt::format("the capture has {}, at least 2 are needed; hold fewer out",
-                                                 countText(train, "training camera")));
+    if (train < kLeastTrainingCameras) {
+      throw Error(Error::Kind::Data, fmt::format("the capture has {}, at least {} are needed; hold fewer out",
+                                                 countText(train, "training camera"), kLeastTrainingCameras));
     }
     c.scores["training_cameras"] = train;
     c.scores["test_cameras"] = static_cast<double>(c.capture.views.size()) - train;

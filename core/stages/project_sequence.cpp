@@ -90,9 +90,9 @@ class ProjectSequence final : public GaussianSequence {
   FrameContent content(FrameIndex frame) const override {
     FrameContent c;
     c.materials = isDone(kMaterialsStep, frame);
-    const bool refined = isDone(kRefineStep, frame);
-    c.unfinished = !c.materials && !refined && isDone(kFitStep, frame) && isFor(kRefineStep, frame);
-    c.gaussians = c.materials || refined || isDone(kFitStep, frame);
+    const bool finished = c.materials || isDone(kRefineStep, frame);
+    c.gaussians = finished || isDone(kFitStep, frame);
+    c.unfinished = c.gaussians && !finished && isFor(kRefineStep, frame);
     c.mesh = isDone(kMeshStep, frame);
     if (!c.gaussians && shows_ != Shows::Solved) {
       if (const std::optional<SolvedPair> pair = solvedPair(frame)) {

@@ -106,24 +106,31 @@ LastSolved lastThatServes(const Project& project, const WantedResults& wanted, c
   return {found->project, changes.empty() ? std::vector<std::string>{told} : changes};
 }
 
-// No record is read where every frame has Gaussians.
-std::vector<FrameIndex> leftOutOf(const Project& project, const WantedResults& wanted,
-                                  const Progress& progress) {
-  const auto sequence = sequenceOf(project, wanted.between ? Shows::Between : Shows::Solved);
-  std::map<std::string, FrameIndex> lacking;
-  for (const FrameIndex frame : framesIn(project, wanted.frames)) {
-    progress.check();
-    if (!sequence->content(frame).gaussians) lacking.emplace(nameOf(*sequence, frame), frame);
-  }
-  if (lacking.empty()) return {};
-  std::set<FrameIndex> left_out;
+// Of the frames, by name, those of which there are results of other settings or takes.
+std::vector<FrameIndex> solvedOtherwise(const Project& project,
+                                        const std::map<std::string, FrameIndex>& frames,
+                                        const Progress& progress) {
+  if (frames.empty()) return {};  // no record is read
+  std::set<FrameIndex> solved;
   for (const ResultRecord& record : project.store().recordsByAge()) {
     progress.check();
     const StepId& step = record.ingredients.step;
     if (record.lead || step == kMeshStep || !shownOf(project.setup().stages, step).frame) continue;
-    if (const auto frame = lacking.find(record.frame); frame != lacking.end()) left_out.insert(frame->second);
+    if (const auto frame = frames.find(record.frame); frame != frames.end()) solved.insert(frame->second);
   }
-  return {left_out.begin(), left_out.end()};
+  return {solved.begin(), solved.end()};
+}
+
+void addWhatIsLacking(LastSolved& last, const WantedResults& wanted, const Progress& progress) {
+  const auto sequence = sequenceOf(last.project, wanted.between ? Shows::Between : Shows::Solved);
+  std::map<std::string, FrameIndex> lacking;
+  for (const FrameIndex frame : framesIn(last.project, wanted.frames)) {
+    progress.check();
+    const FrameContent content = sequence->content(frame);
+    if (!content.gaussians) lacking.emplace(nameOf(*sequence, frame), frame);
+    if (content.unfinished) last.unfinished.push_back(frame);
+  }
+  if (isAllFrames(wanted.frames)) last.left_out = solvedOtherwise(last.project, lacking, progress);
 }
 
 // "P.beam": frames 000001-000002 are
@@ -136,17 +143,6 @@ std::string framesAre(const Project& project, const std::vector<FrameIndex>& fra
   }
   return fmt::format("\"{}\": {} {} {}", project.folder().string(), nounText(names.size(), "frame"),
                      shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are"));
-}
-
-std::vector<FrameIndex> unfinishedOf(const Project& project, const WantedResults& wanted,
-                                     const Progress& progress) {
-  const auto sequence = sequenceOf(project, Shows::Solved);
-  std::vector<FrameIndex> unfinished;
-  for (const FrameIndex frame : framesIn(project, wanted.frames)) {
-    progress.check();
-    if (sequence->content(frame).unfinished) unfinished.push_back(frame);
-  }
-  return unfinished;
 }
 
 void requireStrictly(bool none, const std::string& text) {
@@ -183,8 +179,7 @@ void LastSolved::tell() const {
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
   if (project.withoutCapture()) return {project, {}};
   LastSolved last = lastThatServes(project, wanted, progress);
-  if (isAllFrames(wanted.frames)) last.left_out = leftOutOf(last.project, wanted, progress);
-  last.unfinished = unfinishedOf(last.project, wanted, progress);
+  addWhatIsLacking(last, wanted, progress);
   if (wanted.strict) {
     requireStrictly(last.left_out.empty(), last.leftOutText());
     requireStrictly(last.unfinished.empty(), last.unfinishedText());

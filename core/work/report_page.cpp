@@ -39,8 +39,8 @@ std::string head(std::initializer_list<const char*> titles) {
 struct CameraRow {
   bool held_out = false;
   std::size_t left_out = 0;  // frames
-  double psnr = 0, least = 0, n = 0;
-  double ssim = 0, with_ssim = 0;
+  std::vector<PictureScore> scores;
+  double least = 0;  // psnr
   std::string least_frame;
   std::vector<std::pair<std::size_t, double>> over_time;
 };
@@ -237,9 +237,8 @@ class PageWriter {
         CameraRow& r = rows[v.camera];
         r.held_out = v.held_out;
         r.left_out += v.left_out;
-        if (r.n == 0 || v.score.psnr < r.least) r.least = v.score.psnr, r.least_frame = frames_[f];
-        r.psnr += v.score.psnr, ++r.n;
-        if (v.score.ssim) r.ssim += *v.score.ssim, ++r.with_ssim;
+        if (r.scores.empty() || v.score.psnr < r.least) r.least = v.score.psnr, r.least_frame = frames_[f];
+        r.scores.push_back(v.score);
         r.over_time.emplace_back(f, v.score.psnr);
       }
     }
@@ -269,9 +268,9 @@ class PageWriter {
   static std::string useOf(const CameraRow& row) {
     if (row.held_out) return "held out";
     if (row.left_out == 0) return "training";
-    const auto frames = static_cast<std::size_t>(row.n);
-    return row.left_out == frames ? "left out"
-                                  : fmt::format("training, left out of {}", countText(row.left_out, "frame"));
+    return row.left_out == row.scores.size()
+               ? "left out"
+               : fmt::format("training, left out of {}", countText(row.left_out, "frame"));
   }
 
   void cameras() {
@@ -287,8 +286,9 @@ class PageWriter {
     out_ += "<table>" + head({"Camera", "Use", "PSNR, dB", "SSIM", "Least PSNR", "in frame", "Over time"}) +
             "<tbody>";
     for (const auto& [name, r] : rows) {
+      const PictureScore mean = meanOf(r.scores);
       out_ += "<tr>" + cell(name, accused.contains(name) ? "name bad" : "name") + cell(useOf(r)) +
-              number(r.psnr / r.n, 2) + (r.with_ssim > 0 ? number(r.ssim / r.with_ssim, 4) : cell("-", "n")) +
+              number(mean.psnr, 2) + (mean.ssim ? number(*mean.ssim, 4) : cell("-", "n")) +
               number(r.least, 2) + cell(r.least_frame) + "<td>" + sparkline(r, low, high) + "</td></tr>\n";
     }
     out_ += fmt::format("</tbody></table>\n<p class=\"note\">Lines: PSNR from {:.1f} to {:.1f} dB.</p>\n",

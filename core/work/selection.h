@@ -11,10 +11,11 @@
 
 namespace beam {
 
-// "test", "train", "all", camera names and patterns ("cam0*") in any mixture, with commas; each view once, in
-// the order of the words. Throws Error{Usage} for a word that chooses none and an empty choice.
 // The words that hold where nobody says any: test, or all where no camera is held out.
 std::string usualCameras(const CaptureSet& capture);
+
+// "test", "train", "all", camera names and patterns ("cam0*") in any mixture, with commas; each view once, in
+// the order of the words. Throws Error{Usage} for a word that chooses none and an empty choice.
 std::vector<View> selectViews(const std::string& words, const CaptureSet& capture);
 
 // "all": every frame with Gaussians; else a frame list. Throws Error{Data} when nothing is solved, Cancelled:

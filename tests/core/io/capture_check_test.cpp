@@ -20,12 +20,18 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+// It is that of camera b in frame 000004.
+void putCaptureWithATruncatedPicture(const std::filesystem::path& folder) {
+  put(folder / "dataset.json", kDataset);
+  putPictures(folder);
+  const std::filesystem::path picture = folder / "images/b/000004.png";
+  const std::string whole = readTextFile(picture);
+  put(picture, whole.substr(0, whole.size() - 9));
+}
+
 TEST(CaptureCheck, NamesFileCameraAndFrameOfEachDamagedPicture) {
   const TempDir dir;
-  put(dir / "dataset.json", kDataset);
-  putPictures(dir.path());
-  const std::string whole = readTextFile(dir / "images/b/000004.png");
-  put(dir / "images/b/000004.png", whole.substr(0, whole.size() - 9));
+  putCaptureWithATruncatedPicture(dir.path());
   writePng(dir / "masks/a/000004.png", Image<std::uint8_t>(7, 7));
   const CheckReport r = checkPath(dir.path());
   EXPECT_EQ(r.kind, "capture");
@@ -53,10 +59,7 @@ TEST(CaptureCheck, NamesAMaskWithAFlippedByte) {
 
 TEST(CaptureCheck, SaysInTwoHalvesWhatItSaysAtOnce) {
   const TempDir dir;
-  put(dir / "dataset.json", kDataset);
-  putPictures(dir.path());
-  const std::string whole = readTextFile(dir / "images/b/000004.png");
-  put(dir / "images/b/000004.png", whole.substr(0, whole.size() - 9));
+  putCaptureWithATruncatedPicture(dir.path());
   const ImportedCapture capture = openCapture(dir.path());
   CheckReport r = checkDescription(dir.path(), capture);
   ASSERT_EQ(r.cameras.size(), 3u);
