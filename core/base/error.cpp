@@ -3,6 +3,10 @@
 
 namespace beam {
 
+void requireData(const Error& handled) {
+  if (handled.kind() != Error::Kind::Data) throw;
+}
+
 int exitCode(Error::Kind kind) {
   switch (kind) {
     case Error::Kind::Usage:

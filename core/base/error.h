@@ -13,7 +13,7 @@ class Error : public std::runtime_error {
   enum class Kind {
     Usage,        // the caller's words: unknown flag, value out of range
     Data,         // bad input: what was expected, what was found, where
-    Refused,      // memory or disk will not do
+    Refused,      // memory or disk will not do, or a disk whose locks others do not see
     OutOfMemory,  //
     Locked,       // the project is in use by another process
     Storage,      // reading or writing failed in the file system
@@ -26,6 +26,10 @@ class Error : public std::runtime_error {
  private:
   Kind kind_;
 };
+
+// For handlers that go on without what bad data spoiled: throws the error that is being handled again unless
+// it is one of Data. A disk or a memory that fails for a moment says nothing about the data.
+void requireData(const Error& handled);
 
 // Thrown by Progress when a stop was requested; nobody but the runner and main catches it.
 class Cancelled : public std::exception {

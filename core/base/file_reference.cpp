@@ -1,8 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/file_reference.h"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <iterator>
+
+#include "core/base/error.h"
+
 namespace beam {
 namespace fs = std::filesystem;
+
+bool lastsUntilChanged(int error_number) {
+  static constexpr int kLasting[] = {ENOENT, ENOTDIR, ELOOP,  ENAMETOOLONG, EACCES,
+                                     EPERM,  ENXIO,   EISDIR, EINVAL};
+  return std::find(std::begin(kLasting), std::end(kLasting), error_number) != std::end(kLasting);
+}
+
+bool isThere(const fs::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0) return true;
+  if (lastsUntilChanged(errno)) return false;
+  throw Error(Error::Kind::Storage,
+              fmt::format("cannot examine \"{}\": {}", path.string(), std::strerror(errno)));
+}
 
 FileReference referenceTo(const fs::path& target, const fs::path& folder) {
   std::error_code failed;
@@ -16,10 +40,9 @@ std::optional<fs::path> resolve(const FileReference& reference, const fs::path& 
   if (!reference.relative.empty()) {
     const fs::path base = fs::weakly_canonical(fs::absolute(folder), failed);
     const fs::path beside = (base / reference.relative).lexically_normal();
-    if (fs::exists(beside, failed)) return beside;
+    if (isThere(beside)) return beside;
   }
-  if (!reference.absolute.empty() && fs::exists(reference.absolute, failed))
-    return fs::path(reference.absolute);
+  if (!reference.absolute.empty() && isThere(reference.absolute)) return fs::path(reference.absolute);
   return std::nullopt;
 }
 

@@ -9,6 +9,14 @@
 
 namespace beam {
 
+// Whether the refusal of a file, by errno, lasts until somebody changes the file or the folders above it;
+// else it may be otherwise a moment later.
+bool lastsUntilChanged(int error_number);
+
+// Whether there is a file or folder of that name, as far as it can be reached. Throws Error{Storage} where
+// the disk does not tell: that is neither.
+bool isThere(const std::filesystem::path& path);
+
 struct FileReference {
   std::string relative, absolute;  // '/' between their parts; `relative` may be empty
   bool empty() const { return relative.empty() && absolute.empty(); }

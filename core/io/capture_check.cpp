@@ -109,6 +109,7 @@ CameraCheck checkCamera(const CaptureSet& set, std::size_t view, CameraCheck c,
       }
       ++c.frames;
     } catch (const Error& e) {
+      requireData(e);
       warnings.push_back(
           fmt::format("{}; camera {}, frame {} cannot be used", e.what(), v.name, set.frames[f]));
     }
@@ -150,6 +151,7 @@ void checkLight(const CaptureSet& set, CheckReport& r) {
     try {
       r.panorama = checkPanorama(*set.environment_file, r.warnings);
     } catch (const Error& e) {
+      requireData(e);
       r.warnings.emplace_back(e.what());
     }
     return;

@@ -39,6 +39,9 @@ std::optional<CaptureDescription> readDatasetJson(const std::filesystem::path& f
 std::optional<CaptureDescription> readTransformsJson(const std::filesystem::path& folder);
 std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder);
 bool hasColmapModel(const std::filesystem::path& folder);  // whether its files are there
+// Of a folder with some of these: "has half of a COLMAP model: sparse/0/cameras.bin without images.bin";
+// empty: it has all or none.
+std::string halfColmapModel(const std::filesystem::path& folder);
 
 // Pictures of a camera folder by frame name (file stem); hidden files are none.
 std::map<std::string, std::filesystem::path> picturesIn(const std::filesystem::path& folder);

@@ -107,7 +107,8 @@ MaskKind maskKindOf(const PictureTable& files) {
       try {
         if (checkImageFile(f.picture).has_alpha) return MaskKind::Alpha;
         return keyOf(readPhoto(f.picture)) ? MaskKind::Key : MaskKind::None;
-      } catch (const Error&) {
+      } catch (const Error& e) {
+        requireData(e);
         continue;  // a damaged picture is named when its frame is loaded
       }
     }

@@ -15,6 +15,7 @@
 #include "core/base/word_list.h"
 #include "core/io/capture_description.h"
 #include "core/io/capture_pictures.h"
+#include "core/io/file.h"
 #include "core/io/mesh_ply.h"
 #include "core/scene/name_pattern.h"
 #include "core/scene/transform.h"
@@ -32,6 +33,10 @@ CaptureDescription describedBy(const fs::path& folder) {
   if (auto d = readDatasetJson(folder)) return *d;
   if (auto d = readTransformsJson(folder)) return *d;
   if (auto d = readColmapModel(folder)) return *d;
+  if (const std::string half = halfColmapModel(folder); !half.empty()) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\" {}; copy the whole model, or export it once more",
+                                               folder.string(), half));
+  }
   throw Error(Error::Kind::Data,
               fmt::format("\"{}\" is no capture: expected dataset.json, transforms.json or a COLMAP "
                           "model in sparse/0, found none of them; beam help captures tells what each holds",
@@ -82,10 +87,7 @@ void holdOut(CaptureDescription& d, const std::vector<std::string>& wanted) {
 void dropEmptyCameras(CaptureDescription& d, const fs::path& folder) {
   std::vector<DescribedCamera> kept;
   for (DescribedCamera& c : d.cameras) {
-    std::erase_if(c.pictures, [](const auto& p) {
-      std::error_code out_of_reach;
-      return !fs::exists(p.second, out_of_reach);
-    });
+    std::erase_if(c.pictures, [](const auto& p) { return !isThere(p.second); });
     if (c.pictures.empty() && c.split == Split::Train) {
       d.warnings.push_back(
           fmt::format("\"{}\": camera {}: expected pictures in \"{}\", found none; the camera is left out",
@@ -116,6 +118,7 @@ PointCloud pointsOf(const CaptureDescription& d, const fs::path& folder, std::ve
     try {
       return readPointsPly(file);
     } catch (const Error& e) {
+      requireData(e);
       warnings.push_back(fmt::format("{}; the seed points are left out", e.what()));
     }
   }

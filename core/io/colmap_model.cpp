@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -320,16 +321,15 @@ struct ModelPlace {
   bool binary = false;
 };
 
+constexpr const char* kModelPlaces[] = {"sparse/0", "sparse", "colmap/sparse/0", "."};
+constexpr const char* kEndings[] = {".bin", ".txt"};
+
 std::optional<ModelPlace> findModel(const std::filesystem::path& folder) {
-  for (const char* place : {"sparse/0", "sparse", "colmap/sparse/0", "."}) {
+  for (const char* place : kModelPlaces) {
     const std::filesystem::path model = folder / place;
-    const auto both = [&](const char* cameras, const char* images) {
-      std::error_code out_of_reach;
-      return std::filesystem::exists(model / cameras, out_of_reach) &&
-             std::filesystem::exists(model / images, out_of_reach);
-    };
-    if (both("cameras.bin", "images.bin")) return ModelPlace{model, true};
-    if (both("cameras.txt", "images.txt")) return ModelPlace{model, false};
+    for (const std::string ending : kEndings)
+      if (isThere(model / ("cameras" + ending)) && isThere(model / ("images" + ending)))
+        return ModelPlace{model, ending == kEndings[0]};
   }
   return std::nullopt;
 }
@@ -337,6 +337,30 @@ std::optional<ModelPlace> findModel(const std::filesystem::path& folder) {
 }  // namespace
 
 bool hasColmapModel(const std::filesystem::path& folder) { return findModel(folder).has_value(); }
+
+std::string halfColmapModel(const std::filesystem::path& folder) {
+  if (hasColmapModel(folder)) return {};
+  for (const char* place : kModelPlaces) {
+    std::vector<std::string> found, missing;
+    for (const char* part : {"cameras", "images"}) {
+      const std::filesystem::path stem = std::filesystem::path(place) / part;
+      const auto ending = std::find_if(std::begin(kEndings), std::end(kEndings),
+                                       [&](const char* e) { return isThere(folder / (stem.string() + e)); });
+      if (ending == std::end(kEndings))
+        missing.emplace_back(part);
+      else
+        found.push_back(stem.lexically_normal().string() + *ending);
+    }
+    if (found.empty()) continue;
+    if (!missing.empty())
+      return fmt::format("has half of a COLMAP model: {} without {}.bin or {}.txt beside it", found.front(),
+                         missing.front(), missing.front());
+    return fmt::format(
+        "has parts of two COLMAP models: {} and {}, of which one has to be written as the other", found[0],
+        found[1]);
+  }
+  return {};
+}
 
 std::optional<CaptureDescription> readColmapModel(const std::filesystem::path& folder) {
   const std::optional<ModelPlace> place = findModel(folder);

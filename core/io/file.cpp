@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 
 #include "core/base/error.h"
 
@@ -61,16 +62,14 @@ template <class Buffer>
 Buffer readWhole(const std::filesystem::path& path, std::uint64_t max_bytes) {
   // O_NONBLOCK: a pipe in the place of a file is refused, not waited for.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.get() < 0) {
-    throw Error(Error::Kind::Data,
-                fmt::format("cannot open \"{}\": {}", path.string(), std::strerror(errno)));
-  }
+  if (file.get() < 0) throw openError(path, errno);
   Buffer bytes(regularFileSize(file.get(), path, max_bytes), {});
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t n = ::read(file.get(), bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) storageError("read", path);
+    if (n < 0 && errno == EISDIR) throw openError(path, errno);
+    if (n < 0) throw readError(path, errno);
     if (n == 0) {
       throw Error(Error::Kind::Data,
                   fmt::format("\"{}\" shrank while it was read: expected {} bytes, found {}", path.string(),
@@ -92,14 +91,26 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
 
 std::atomic<unsigned> temporary_files{0};
 
+// A new file beside `path`, open; its name goes into `temporary`. A killed process of our number, which in
+// containers comes again and again, may have left some of these names.
+int createBeside(const std::filesystem::path& path, const std::filesystem::path& folder,
+                 std::filesystem::path& temporary) {
+  for (int left_over = 0; left_over < 10000; ++left_over) {
+    temporary =
+        folder / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), temporary_files++);
+    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (file >= 0) return file;
+    if (errno != EEXIST) break;
+  }
+  storageError("create a file beside", path);
+}
+
 // `write` is given the open file.
 template <class Write>
 void replaceFile(const std::filesystem::path& path, Write&& write) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const std::filesystem::path temporary =
-      folder / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), temporary_files++);
-  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644));
-  if (file.get() < 0) storageError("create a file beside", path);
+  std::filesystem::path temporary;
+  Descriptor file(createBeside(path, folder, temporary));
   try {
     write(file.get());
     if (::fsync(file.get()) != 0) storageError("sync", path);
@@ -113,6 +124,11 @@ void replaceFile(const std::filesystem::path& path, Write&& write) {
 }
 
 }  // namespace
+
+Error openError(const std::filesystem::path& path, int error_number) {
+  return {lastsUntilChanged(error_number) ? Error::Kind::Data : Error::Kind::Storage,
+          fmt::format("cannot open \"{}\": {}", path.string(), std::strerror(error_number))};
+}
 
 std::vector<std::byte> readFile(const std::filesystem::path& path, std::uint64_t max_bytes) {
   return readWhole<std::vector<std::byte>>(path, max_bytes);
@@ -148,6 +164,12 @@ void writeFileAtomically(const std::filesystem::path& path, const std::function<
       unsynced = 0;
     }
   });
+}
+
+Error readError(const std::filesystem::path& path, int error_number) {
+  return {Error::Kind::Storage,
+          fmt::format("cannot read \"{}\": {}; try again, and where it stays so copy the file anew",
+                      path.string(), std::strerror(error_number))};
 }
 
 Error storageError(const std::filesystem::filesystem_error& refused) {

@@ -12,10 +12,18 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/file_reference.h"
 
 namespace beam {
 
-// The whole file. Throws Error{Data} when it is missing, no regular file or larger than `max_bytes`;
+// Why opening `path` was refused: Error{Data} for what stays so until somebody changes the file (missing, not
+// permitted), Error{Storage} for what may be otherwise a moment later.
+Error openError(const std::filesystem::path& path, int error_number);
+
+// Error{Storage}: reading failed in the middle of the file.
+Error readError(const std::filesystem::path& path, int error_number);
+
+// The whole file. Throws openError, Error{Data} when it is no regular file or larger than `max_bytes`,
 // Error{Storage} when reading fails.
 std::vector<std::byte> readFile(const std::filesystem::path& path, std::uint64_t max_bytes);
 inline constexpr std::uint64_t kMostTextBytes = 64u << 20;

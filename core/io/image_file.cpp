@@ -6,10 +6,12 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <new>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/base/word_list.h"
 #include "core/io/content_seal.h"
 #include "core/io/file.h"
@@ -132,17 +134,34 @@ void checkEnd(const Bytes& b, const std::filesystem::path& path) {
                         png ? "PNG" : "JPEG"));
 }
 
+// Empty: damaged, or there was too little memory, which the decoders do not tell apart.
+cv::Mat decodeOnce(const Bytes& b, const std::filesystem::path& path) {
+  try {
+    return cv::imdecode(cv::Mat(1, static_cast<int>(b.size()), CV_8U, const_cast<std::byte*>(b.data())),
+                        cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& e) {
+    if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
+    bad(path, fmt::format("the picture cannot be decoded: {}", e.err));
+  }
+}
+
+// Throws std::bad_alloc where not even as much can be had as decoding a picture of that size takes.
+void requireRoomFor(const ImageSize& size) {
+  constexpr std::size_t kBytesOfAPixel = 8 + 8;  // four channels of 16 bits, once as stored and once decoded
+  const std::size_t bytes = kBytesOfAPixel * static_cast<std::size_t>(size.width) * size.height;
+  ::operator delete(::operator new(bytes));  // by these names, which the compiler does not take out
+}
+
 // 8 bits a channel; as many channels as stored, in OpenCV's order.
 cv::Mat decode(const std::filesystem::path& path) {
   const Bytes b = readFile(path, kMaxFile);
-  checkSize(sizeOf(b, path), b, path);
+  const ImageSize size = sizeOf(b, path);
+  checkSize(size, b, path);
   checkEnd(b, path);
-  cv::Mat m;
-  try {
-    m = cv::imdecode(cv::Mat(1, static_cast<int>(b.size()), CV_8U, const_cast<std::byte*>(b.data())),
-                     cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception& e) {
-    bad(path, fmt::format("the picture cannot be decoded: {}", e.err));
+  cv::Mat m = decodeOnce(b, path);
+  if (m.empty()) {
+    requireRoomFor(size);
+    m = decodeOnce(b, path);  // what was short then may not be now
   }
   if (m.empty()) bad(path, "the picture cannot be decoded; the file is damaged");
   if (m.depth() == CV_16U) m.convertTo(m, CV_8U, 255.0 / 65535.0);
@@ -184,10 +203,20 @@ void appendPngChunk(std::vector<unsigned char>& out, const std::string& type, co
                            0, reinterpret_cast<const unsigned char*>(content.data()), content.size())));
 }
 
+// The pictures are ours: nothing but memory can be short, which the encoders word in many ways.
+std::vector<unsigned char> encoded(const char* ending, const cv::Mat& m, const std::vector<int>& how = {}) {
+  std::vector<unsigned char> bytes;
+  try {
+    if (cv::imencode(ending, m, bytes, how)) return bytes;
+  } catch (const cv::Exception& e) {
+    logDebug("a {} picture could not be encoded: {}", ending + 1, e.err);
+  }
+  throw std::bad_alloc();
+}
+
 void writeEncoded(const std::filesystem::path& path, const cv::Mat& m, bool srgb, const FileNotes& notes) {
   constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR, which comes first
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", m, bytes)) throw Error(Error::Kind::Bug, "cannot encode a PNG picture");
+  std::vector<unsigned char> bytes = encoded(".png", m);
   std::vector<unsigned char> chunks;
   if (srgb && !notes.empty()) appendPngChunk(chunks, "sRGB", std::string(1, '\0'));  // perceptual intent
   for (const auto& [name, text] : sealable(notes)) appendPngChunk(chunks, "tEXt", name + '\0' + text);
@@ -280,10 +309,7 @@ void writePng(const std::filesystem::path& path, const Image<u8vec3>& image, con
 }
 
 std::vector<std::byte> encodeJpeg(const Image<u8vec3>& image, int quality) {
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".jpg", matOf(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality})) {
-    throw Error(Error::Kind::Bug, "cannot encode a JPEG picture");
-  }
+  const std::vector<unsigned char> bytes = encoded(".jpg", matOf(image), {cv::IMWRITE_JPEG_QUALITY, quality});
   const auto all = std::as_bytes(std::span(bytes));
   return {all.begin(), all.end()};
 }

@@ -69,6 +69,7 @@ std::vector<FrameView> loadFrameViews(const CaptureSet& capture, FrameIndex fram
     try {
       loaded[i] = loadFrameView(capture, index, frame, downscale, progress);
     } catch (const Error& e) {
+      requireData(e);
       problems[i] = e.what();
     }
   });

@@ -48,7 +48,8 @@ FrameView maskView(const CaptureSet& capture, ViewIndex view, FrameIndex frame, 
   FrameView full{v.name, transformed(v.camera, to_hull), {}, {}};
   try {
     full.mask = capture.source->mask(view, frame);
-  } catch (const Error&) {
+  } catch (const Error& e) {
+    requireData(e);
     return full;  // whoever needs the picture says so
   }
   const int side = std::max(full.mask.width, full.mask.height);

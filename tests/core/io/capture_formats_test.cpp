@@ -447,5 +447,23 @@ TEST(CaptureFormats, SeedPointsOfDomeTinyLieInTheMasksOfFrameZeroAndTurnedOnesDo
   EXPECT_LT(worst_turned, 0.9);
 }
 
+TEST(CaptureFormats, HalfOfAColmapModelIsNamedWithWhatIsMissing) {
+  const TempDir dir;
+  putPictures(dir.path());
+  putColmap(dir.path(), "a", "b");
+  for (const auto& [missing, there] :
+       {std::pair{"images", "sparse/0/cameras.txt"}, std::pair{"cameras", "sparse/0/images.txt"}}) {
+    const fs::path file = dir.path() / fmt::format("sparse/0/{}.txt", missing), aside = dir / "aside";
+    fs::rename(file, aside);
+    EXPECT_FALSE(isCapture(dir.path()));
+    EXPECT_THAT(errorOf(dir.path()), AllOf(HasSubstr("half of a COLMAP model"), HasSubstr(there),
+                                           HasSubstr(fmt::format("{}.bin or {}.txt", missing, missing))));
+    fs::rename(aside, file);
+  }
+  fs::rename(dir / "sparse/0/images.txt", dir / "sparse/0/images.bin");
+  EXPECT_THAT(errorOf(dir.path()),
+              AllOf(HasSubstr("two COLMAP models"), HasSubstr("cameras.txt"), HasSubstr("images.bin")));
+}
+
 }  // namespace
 }  // namespace beam

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files: what is written is read back; what is damaged is refused by name, before memory is taken.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
+#include <new>
 
 #include "core/base/error.h"
 #include "core/base/rng.h"
@@ -12,6 +17,7 @@
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "tests/support/few_descriptors.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temp_dir.h"
 
@@ -283,6 +289,53 @@ TEST(Files, PiecesAreOneFileOrNone) {
   EXPECT_THROW(writeFileAtomically(dir / "a", fails), Cancelled);
   EXPECT_EQ(bytesOf(dir / "a"), "ababab");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
+}
+
+TEST(Files, ThatCannotBeOpenedForAMomentAreAFaultOfTheDiskAndNotOfTheFile) {
+  const TempDir dir;
+  writeFileAtomically(dir / "a.txt", "here");
+  {
+    const testing::FewDescriptors few;
+    testing::messageOf(Error::Kind::Storage, [&] { readTextFile(dir / "a.txt"); });
+  }
+  EXPECT_EQ(readTextFile(dir / "a.txt"), "here");
+  dataErrorOf([&] { readTextFile(dir / "b.txt"); });
+  dataErrorOf([&] { readTextFile(dir / "a.txt" / "b.txt"); });
+}
+
+TEST(Files, AreWrittenWhereAKilledProcessOfTheSameNumberLeftItsTemporaryOnes) {
+  const TempDir dir;
+  for (int i = 0; i < 3000; ++i)
+    std::ofstream(dir / fmt::format(".a.txt.{}.{}.tmp", ::getpid(), i)) << "left";
+  writeFileAtomically(dir / "a.txt", "new");
+  EXPECT_EQ(readTextFile(dir / "a.txt"), "new");
+}
+
+// In a child of its own, which may take little more memory than it has.
+TEST(PngFile, ThatThereIsNoMemoryForIsNotCalledDamaged) {
+  const TempDir dir;
+  writePng(dir / "large.png", Image<u8vec3>(6000, 6000, u8vec3(7), Encoding::Srgb));
+  const auto decodeInLittle = [&] {
+    std::ifstream statm("/proc/self/statm");
+    rlim_t pages = 0;
+    statm >> pages;
+    const rlim_t now = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (20u << 20);
+    const struct rlimit little { now, now };
+    ::setrlimit(RLIMIT_AS, &little);
+    try {
+      readPhoto(dir / "large.png");
+    } catch (const std::bad_alloc&) {
+      ::_exit(7);
+    } catch (const Error&) {
+      ::_exit(8);
+    }
+    ::_exit(9);
+  };
+  const pid_t child = ::fork();
+  if (child == 0) decodeInLittle();
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 7);
 }
 
 }  // namespace

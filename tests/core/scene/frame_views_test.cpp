@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <new>
 #include <set>
 
 #include "core/base/error.h"
@@ -23,10 +25,12 @@ constexpr int kWidth = 12, kHeight = 8;
 // Every pixel tells camera and place. What is in `torn` cannot be read, what is in `absent` is not there.
 struct Pictures final : FrameSource {
   std::set<int> torn, torn_masks, absent;
+  std::function<void()> fault;  // of camera 2
   bool masks = true;
 
   bool has(ViewIndex view, FrameIndex) const override { return !absent.contains(view.value); }
   Image<u8vec3> photo(ViewIndex view, FrameIndex) const override {
+    if (fault && view.value == 2) fault();
     if (torn.contains(view.value))
       throw Error(Error::Kind::Data, fmt::format("picture {} is torn", view.value));
     Image<u8vec3> photo(kWidth, kHeight, u8vec3(0), Encoding::Srgb);
@@ -160,6 +164,21 @@ TEST_F(FrameViews, WithoutMasksStayWithoutMasks) {
   for (const int downscale : {1, 2}) {
     for (const FrameView& v : load(Split::Train, downscale)) EXPECT_TRUE(v.mask.empty());
   }
+}
+
+TEST_F(FrameViews, AFaultOfDiskOrMemoryLeavesNoCameraOut) {
+  for (const Error::Kind kind : {Error::Kind::Storage, Error::Kind::OutOfMemory, Error::Kind::Bug}) {
+    pictures->fault = [&] { throw Error(kind, "for a moment"); };
+    try {
+      loadFrameViews(capture, {}, Split::Train, 1, Progress());
+      ADD_FAILURE() << "a frame without the camera was given out";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), kind);
+    }
+  }
+  pictures->fault = [] { throw std::bad_alloc(); };
+  EXPECT_THROW(loadFrameViews(capture, {}, Split::Train, 1, Progress()), std::bad_alloc);
+  EXPECT_TRUE(said.empty());
 }
 
 }  // namespace
