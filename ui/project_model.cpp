@@ -305,11 +305,13 @@ bool ProjectModel::save() {
                       "in its place.",
                       project_->folder().string()));
     }
-    project_->save();
+    const bool by_others = project_->save();
+    if (by_others) capture_ = std::make_shared<const CaptureSet>(project_->capture());
     on_disk_ = true;
     unsaved_ = false;
     edited_ = false;
     autosave_.stop();
+    if (by_others) refresh(true);
     Q_EMIT settingsChanged();
     return true;
   } catch (const Error& e) {

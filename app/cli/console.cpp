@@ -46,9 +46,6 @@ std::string barText(double fraction, std::size_t width) {
   return fmt::format("[{}{}]", std::string(full, '#'), std::string(width - full, '.'));
 }
 
-// Nothing can be told of a standard error that takes nothing; what the work comes to stays what matters.
-void put(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stderr); }
-
 }  // namespace
 
 Console::Console() {
@@ -70,6 +67,11 @@ Console::~Console() {
 
 void Console::setQuiet(bool quiet) { quiet_ = quiet; }
 void Console::setVerbose(bool verbose) { verbose_ = verbose; }
+
+// The work goes on: what it comes to matters more than what is told of it.
+void Console::put(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stderr) != text.size()) said_all_ = false;
+}
 
 void Console::clearBar() {
   if (!bar_shown_) return;

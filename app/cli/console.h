@@ -3,6 +3,7 @@
 // error. On a terminal no line of standard error is longer than the terminal is wide at that moment.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -40,6 +41,8 @@ class Console {
   void detail(const std::string& line);   // info that is told with --verbose alone
   void warning(const std::string& text);  // "warning: ..."; a text is shown once
   void error(const std::string& text);    // "error: ..."
+  // Whether standard error took all of it.
+  bool saidAll() const { return said_all_; }
 
   // A bar on a terminal, otherwise a plain line every few seconds.
   void progress(const ConsoleProgress& progress);
@@ -49,6 +52,7 @@ class Console {
 
  private:
   using Clock = std::chrono::steady_clock;
+  void put(const std::string& text);  // on standard error
   void clearBar();
   // `mark` is coloured and counts into the width.
   void line(const char* mark, const char* color, const std::string& text);
@@ -58,6 +62,7 @@ class Console {
   bool quiet_ = false, verbose_ = false;
   bool terminal_ = false, color_ = false;
   bool bar_shown_ = false;
+  std::atomic<bool> said_all_ = true;
   Clock::time_point last_shown_{};
   std::map<std::string, int> warned_;
   int sink_ = 0;

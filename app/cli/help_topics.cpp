@@ -175,6 +175,10 @@ std::string environmentText() {
   page.row("XDG_STATE_HOME",
            "where it keeps how long steps took on this machine, for run --dry-run; else "
            "~/.local/state");
+  page.row(
+      "BEAM_LOCAL_LOCKS",
+      "1: write to a project on a network disk whose locks other machines do not see (exit code 69 else), "
+      "while none of them works in it");
   page.row("TMPDIR", "where beam evaluate puts pictures for a moment; else /tmp");
   page.blank();
   page.paragraph(

@@ -2,10 +2,12 @@
 // The program `beam`: parses, runs the command that was typed, turns whatever goes wrong into a message and a
 // code.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
+#include <string_view>
 
 #include "app/cli/choices.h"
 #include "app/cli/commands.h"
@@ -116,7 +118,10 @@ int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
     console.error(storage.what());
     return exitCode(storage.kind());
   } catch (const std::bad_alloc&) {
-    console.error("out of memory; close other programs or ask for less");
+    console.error(
+        "out of memory; close other programs, or ask for less at once: fewer --cameras, --frames or "
+        "--channels, "
+        "a smaller --size");
     return exitCode(Error::Kind::OutOfMemory);
   } catch (const std::exception& e) {
     console.error(fmt::format("this is a bug of beam: {}", e.what()));
@@ -127,8 +132,15 @@ int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
 }  // namespace
 }  // namespace beam
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   beam::Interrupt interrupt;
   beam::Console console;
-  return beam::guarded(argc, argv, console, interrupt.token());
+  const int code = beam::guarded(argc, argv, console, interrupt.token());
+  // As the GNU tools have it: done is only what could be told, warnings among it.
+  return code == beam::kDone && !console.saidAll() ? beam::exitCode(beam::Error::Kind::Storage) : code;
+} catch (const std::exception&) {  // not even the words for an error had room
+  constexpr std::string_view kWords = "error: out of memory; close other programs\n";
+  if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0)
+    return beam::exitCode(beam::Error::Kind::Storage);
+  return beam::exitCode(beam::Error::Kind::OutOfMemory);
 }

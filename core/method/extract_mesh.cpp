@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/method/extract_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/base/hash.h"
+#include "core/method/kept_fusion.h"
 #include "core/method/mesh_bounds.h"
 #include "core/method/tsdf.h"
 #include "core/method/voxel_blocks.h"
@@ -73,13 +77,28 @@ double sizeInPersons(const FusionBounds& bounds) {
   return longest > 0 && std::isfinite(longest) ? longest / kPerson_m : 1;
 }
 
+// Of all that a fusion hangs on.
+Digest digestOf(std::span<const DepthView> views, const ExtractMeshOptions& options, const MeshScope& scope,
+                const FusionBounds& bounds) {
+  Hasher hasher;
+  hasher.add(fmt::format("{} {} {} {} {}", options.voxel_m, options.truncation_voxels, options.most_voxels,
+                         scope.scene, scope.most_rows));
+  hasher.add(std::as_bytes(std::span(&bounds, 1)));
+  for (const DepthView& view : views) {
+    hasher.add(std::as_bytes(std::span(view.depth.values)));
+    hasher.add(std::as_bytes(std::span(view.weight.values)));
+  }
+  return hasher.digest();
+}
+
 // The limit, where there is more than it allows.
 std::variant<Mesh, MeshLimit> meshWithin(std::span<const DepthView> views, const TsdfOptions& tsdf,
-                                         std::size_t most_blocks, std::size_t most_rows, Progress& progress) {
+                                         std::size_t most_blocks, std::size_t most_rows, Progress& progress,
+                                         KeptFusion* kept) {
   if (!touchedBlocks(views, tsdf, most_blocks, kGlance, progress)) return MeshLimit::Voxels;
   const auto blocks = touchedBlocks(views, tsdf, most_blocks, 1, progress);
   if (!blocks) return MeshLimit::Voxels;
-  const std::optional<Mesh> fused = fuseDepth(views, tsdf, *blocks, kMostDebris * most_rows, progress);
+  const std::optional<Mesh> fused = fuseDepth(views, tsdf, *blocks, kMostDebris * most_rows, progress, kept);
   if (!fused) return MeshLimit::Rows;
   Mesh mesh = keepLargeComponents(*fused, kSmallestComponent, progress);
   if (std::max(mesh.vertices.size(), mesh.triangles.size()) > most_rows) return MeshLimit::Rows;
@@ -124,7 +143,7 @@ int mostVoxels(const ExtractMeshOptions& options, const MeshScope& scope) {
 
 ExtractedMesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> cameras,
                           const ExtractMeshOptions& options, const MeshScope& scope, ComputeDevice& device,
-                          Progress& progress) {
+                          Progress& progress, Checkpoint* checkpoint) {
   const std::vector<DepthView> views = [&] {
     Progress drawing = progress.part(kDrawing, "depth of the views");
     return depthViews(cloud, cameras, scope.scene, device, drawing);
@@ -134,16 +153,21 @@ ExtractedMesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> ca
   const std::size_t most_blocks = static_cast<std::size_t>(mostVoxels(options, scope)) / kBlockVoxels;
   ExtractedMesh out;
   out.asked_m = options.voxel_m * (scope.scene ? sizeInPersons(bounds) : 1);
-  for (int coarser = 0;; ++coarser) {
-    out.voxel_m = out.asked_m * std::exp2(coarser / kStepsToTwice);
+  std::optional<KeptFusion> kept;
+  if (checkpoint) kept.emplace(*checkpoint, digestOf(views, options, scope, bounds));
+  for (FusionTry attempt = kept ? kept->kept() : FusionTry();; ++attempt.number) {
+    if (kept) kept->begin(attempt);
+    out.voxel_m = out.asked_m * std::exp2(attempt.number / kStepsToTwice);
     const TsdfOptions tsdf{static_cast<float>(out.voxel_m),
                            static_cast<float>(out.voxel_m * options.truncation_voxels), bounds};
-    std::variant<Mesh, MeshLimit> made = meshWithin(views, tsdf, most_blocks, scope.most_rows, fusing);
+    std::variant<Mesh, MeshLimit> made =
+        meshWithin(views, tsdf, most_blocks, scope.most_rows, fusing, kept ? &*kept : nullptr);
     if (Mesh* mesh = std::get_if<Mesh>(&made)) {
       out.mesh = std::move(*mesh);
+      out.reached = attempt.passed;
       return out;
     }
-    out.reached = std::get<MeshLimit>(made);
+    attempt.passed = std::get<MeshLimit>(made);
   }
 }
 

@@ -8,8 +8,10 @@
 #include <optional>
 #include <span>
 
+#include "core/base/checkpoint.h"
 #include "core/base/fields.h"
 #include "core/base/progress.h"
+#include "core/method/tsdf.h"
 #include "core/render/device.h"
 #include "core/scene/camera.h"
 #include "core/scene/gaussian_cloud.h"
@@ -34,7 +36,6 @@ struct MeshScope {
   std::size_t most_rows = std::numeric_limits<std::uint32_t>::max();  // vertices, or triangles
 };
 
-enum class MeshLimit { Voxels, Rows };
 struct ExtractedMesh {
   Mesh mesh;
   double asked_m = 0;                // the options' voxels; of a scene in proportion to its size
@@ -42,9 +43,10 @@ struct ExtractedMesh {
   std::optional<MeshLimit> reached;  // that made them coarser
 };
 
+// With `checkpoint` it goes on from the slabs that were kept there, and keeps those that are fused.
 ExtractedMesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> cameras,
                           const ExtractMeshOptions& options, const MeshScope& scope, ComputeDevice& device,
-                          Progress& progress);
+                          Progress& progress, Checkpoint* checkpoint = nullptr);
 
 // The limit that `options` set, in voxels.
 int mostVoxels(const ExtractMeshOptions& options, const MeshScope& scope);

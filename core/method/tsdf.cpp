@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/method/kept_fusion.h"
 #include "core/method/voxel_blocks.h"
 #include "core/method/zero_surface.h"
 
@@ -200,14 +201,16 @@ std::optional<std::vector<std::uint64_t>> touchedBlocks(std::span<const DepthVie
 
 std::optional<Mesh> fuseDepth(std::span<const DepthView> views, const TsdfOptions& options,
                               std::span<const std::uint64_t> blocks, std::size_t most_rows,
-                              Progress& progress) {
+                              Progress& progress, KeptFusion* kept) {
   progress.expect(static_cast<std::int64_t>(blocks.size()));
   std::vector<FusedView> fused(views.begin(), views.end());
   parallelFor(fused.size(), 1, [&](std::size_t v, std::size_t) {
     if (!progress.stopRequested()) fused[v].findFarthest();
   });
   ZeroSurface surface(options.voxel_m, std::min(kTrianglesOfABlock * blocks.size(), most_rows));
-  for (std::size_t begin = 0; begin < blocks.size();) {
+  std::size_t begin = kept ? kept->takeUp(blocks.size(), surface) : 0;
+  progress.step(static_cast<std::int64_t>(begin));
+  while (begin < blocks.size()) {
     const std::size_t end = endOfSlab(blocks, begin);
     std::vector<TsdfBlock> slab(end - begin);
     parallelFor(slab.size(), 16, [&](std::size_t from, std::size_t to) {
@@ -220,6 +223,7 @@ std::optional<Mesh> fuseDepth(std::span<const DepthView> views, const TsdfOption
       return std::nullopt;
     progress.step(static_cast<std::int64_t>(end - begin));
     begin = end;
+    if (kept && begin < blocks.size()) kept->keep(begin, surface, progress);
   }
   return surface.take();
 }

@@ -39,6 +39,10 @@ struct TsdfOptions {
   FusionBounds bounds = {};
 };
 
+enum class MeshLimit { Voxels, Rows };
+
+class KeptFusion;
+
 // The blocks that a depth sample inside the bounds falls near, in the order in which they are fused; by every
 // `every`th pixel a side, which tells about how many there are. Nothing: there are more than `most`.
 std::optional<std::vector<std::uint64_t>> touchedBlocks(std::span<const DepthView> views,
@@ -46,10 +50,10 @@ std::optional<std::vector<std::uint64_t>> touchedBlocks(std::span<const DepthVie
                                                         int every, const Progress& progress);
 
 // Of `blocks`, a slab of them at a time; work is parallel over blocks, views in order: the same for any
-// number of threads. Nothing: more than `most_rows` vertices or triangles.
+// number of threads, taken up from `kept` or not. Nothing: more than `most_rows` vertices or triangles.
 std::optional<Mesh> fuseDepth(std::span<const DepthView> views, const TsdfOptions& options,
                               std::span<const std::uint64_t> blocks, std::size_t most_rows,
-                              Progress& progress);
+                              Progress& progress, KeptFusion* kept = nullptr);
 
 // Keeps components with at least `share` of the largest one's triangles; drops unused vertices.
 Mesh keepLargeComponents(const Mesh& mesh, double share, const Progress& progress);

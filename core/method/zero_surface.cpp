@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace beam {
@@ -158,6 +160,37 @@ void ZeroSurface::add(std::vector<TsdfBlock> layers, bool last, const Progress& 
   const auto cut = static_cast<std::ptrdiff_t>(ready);
   blocks_.erase(blocks_.begin(), blocks_.begin() + cut);
   vertices_.erase(vertices_.begin(), vertices_.begin() + cut);
+}
+
+void ZeroSurface::keepIn(CheckpointWriter& checkpoint) const {
+  std::vector<std::uint32_t> counts, all;
+  for (const EdgeVertices& of_block : vertices_) {
+    counts.push_back(static_cast<std::uint32_t>(of_block.size()));
+    all.insert(all.end(), of_block.begin(), of_block.end());
+  }
+  checkpoint.lend(mesh_.vertices);
+  checkpoint.lend(mesh_.triangles);
+  checkpoint.lend(blocks_);
+  checkpoint.give(counts);
+  checkpoint.give(all);
+}
+
+void ZeroSurface::takeUp(CheckpointReader& checkpoint) {
+  const std::vector<vec3> vertices = checkpoint.list<vec3>();
+  const auto triangles = checkpoint.list<std::array<std::uint32_t, 3>>();
+  std::vector<TsdfBlock> blocks = checkpoint.list<TsdfBlock>();
+  const auto counts = checkpoint.list<std::uint32_t>(), all = checkpoint.list<std::uint32_t>();
+  if (counts.size() != blocks.size() || std::accumulate(counts.begin(), counts.end(), 0ull) != all.size())
+    throw Error(Error::Kind::Data, "the checkpoint's blocks and their vertices do not fit");
+  blocks_ = std::move(blocks);
+  vertices_.clear();
+  auto next = all.begin();
+  for (const std::uint32_t count : counts) {
+    vertices_.emplace_back(next, next + count);
+    next += count;
+  }
+  mesh_.vertices.assign(vertices.begin(), vertices.end());  // into the room that is set aside
+  mesh_.triangles.assign(triangles.begin(), triangles.end());
 }
 
 }  // namespace beam

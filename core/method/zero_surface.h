@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/checkpoint.h"
 #include "core/base/progress.h"
 #include "core/method/voxel_blocks.h"
 #include "core/scene/mesh.h"
@@ -26,6 +27,10 @@ class ZeroSurface {
   // Whole layers of rising x; `last`: none follow. The last layer is kept until it is known what it meets.
   void add(std::vector<TsdfBlock> layers, bool last, const Progress& progress);
   const Mesh& soFar() const { return mesh_; }
+  // Between two slabs: all it needs to go on. What is lent stands until the next add().
+  void keepIn(CheckpointWriter& checkpoint) const;
+  // In place of what it has, which stays where Error{Data} is thrown.
+  void takeUp(CheckpointReader& checkpoint);
   Mesh take() { return std::move(mesh_); }
 
  private:

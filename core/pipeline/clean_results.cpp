@@ -80,8 +80,8 @@ class GoneInputs {
       for (const View& view : viewsOfCalibration(text))
         if (!views_.contains(view.name)) gone_.insert(fmt::format("the camera {}", view.name));
       if (!points_ && seedPointsOfCalibration(text) > 0) gone_.insert("the seed points");
-    } catch (const Error&) {
-      // A damaged result tells nothing.
+    } catch (const Error& e) {
+      requireData(e);  // a damaged result tells nothing
     }
   }
 
@@ -98,7 +98,8 @@ class GoneInputs {
     if (!is_new) return known->second;
     try {
       checkImageFile(folder_ / picture);
-    } catch (const Error&) {
+    } catch (const Error& e) {
+      requireData(e);
       known->second = false;
     }
     return known->second;
@@ -107,7 +108,8 @@ class GoneInputs {
   std::string digestNow(const std::string& picture) const {
     try {
       return project_.inputs().file(folder_ / picture).hex();
-    } catch (const Error&) {
+    } catch (const Error& e) {
+      requireData(e);
       return {};
     }
   }
@@ -196,6 +198,13 @@ void removeSetAside(const CleanPlan& plan, Progress& progress) {
   }
 }
 
+void removeCheckpoints(const ResultStore& store, const CleanPlan& plan, const Progress& progress) {
+  for (const Digest& key : plan.checkpoints) {
+    progress.check();
+    if (const std::optional<FileLock> lease = store.tryLease(key)) store.clearCheckpoint(key);
+  }
+}
+
 void removeNotes(const ResultStore& store, const CleanPlan& plan) {
   for (const Digest& key : plan.failures) store.clearFailure(key);
   for (const Digest& key : plan.leases) {
@@ -211,6 +220,7 @@ void carryOut(const Project& project, const CleanPlan& plan, Progress& progress)
   project.store().removeStale(removing);
   Progress rest = progress.part(0.1, "removing damaged results");
   removeSetAside(plan, rest);
+  removeCheckpoints(project.store(), plan, rest);
   removeNotes(project.store(), plan);
 }
 
@@ -230,13 +240,20 @@ CleanPlan planClean(const Project& project, Progress& progress) {
   const ResultStore& store = project.store();
   const bool all_told = std::all_of(plan.use.stages.begin(), plan.use.stages.end(),
                                     [](const StageUse& stage) { return stage.blocked_reason.empty(); });
+  const auto unwanted = [&](const Digest& key) { return all_told && !plan.use.keys_in_force.contains(key); };
   for (const Digest& key : store.failures()) {
-    if (all_told && !plan.use.keys_in_force.contains(key)) plan.failures.push_back(key);
+    if (unwanted(key)) plan.failures.push_back(key);
   }
   for (const Digest& key : store.leases()) {
     if (!store.isLeased(key)) plan.leases.push_back(key);
   }
-  plan.half_built = amountOf(store.stale(), progress);
+  std::vector<fs::path> half_built = store.stale();
+  for (const Digest& key : store.checkpoints()) {
+    if (store.isLeased(key) || !(unwanted(key) || store.has(key))) continue;
+    plan.checkpoints.push_back(key);
+    half_built.push_back(store.checkpointOf(key));
+  }
+  plan.half_built = amountOf(half_built, progress);
   plan.set_aside_folders = store.setAside();
   plan.set_aside = amountOf(plan.set_aside_folders, progress);
   return plan;

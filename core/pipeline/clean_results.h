@@ -22,8 +22,10 @@ struct CleanPlan {
   DiskUse use;                   // others() go, inForce() stays
   std::vector<Digest> failures;  // notes of keys that are not in force; none while a stage is blocked
   std::vector<Digest> leases;    // files that nobody holds: their holders were killed
-  DiskAmount half_built;         // folders of builders that were killed, of a clean that was as well
-  DiskAmount set_aside;          // damaged results in quarantine/
+  // Of results that are there or that nobody wants any more; kept as failures are.
+  std::vector<Digest> checkpoints;
+  DiskAmount half_built;  // these, and folders of builders that were killed, of a clean that was as well
+  DiskAmount set_aside;   // damaged results in quarantine/
   std::vector<std::filesystem::path> set_aside_folders;
   // What results that go were made of and the capture does not have now, in words: "the picture
   // cam00/000.png", "the camera cam05". Away for the moment, perhaps: `accept` decides.

@@ -27,7 +27,8 @@ void readPictures(const Project& project, DiskUse& use, Progress& progress) {
         if (!fs::exists(file, out_of_reach) && !out_of_reach) continue;  // for keys it was never there
         try {
           project.inputs().file(file);
-        } catch (const Error&) {
+        } catch (const Error& e) {
+          requireData(e);
           use.unreadable.push_back(file);
         }
       }
@@ -61,6 +62,14 @@ class KeysInForce {
       addWhatOthersClaim(take, read_later);
       progress_.step();
     }
+    // What is looked at until the takes of now are as far.
+    for (const Take& take : project_.earlierTakes()) {
+      for (const FrameIndex f : take.frames()) {
+        progress_.check();
+        for (const StepId& id : steps_)
+          if (take.claims(f) || read_later.contains(id)) add(id, take, f);
+      }
+    }
   }
 
  private:
@@ -76,6 +85,18 @@ class KeysInForce {
         if (read_later.contains(id)) add(id, take, *f);
       }
     }
+    for (const FrameIndex f : take.claimed()) {
+      progress_.check();
+      if (owned(f) || !isLookedAt(take, f)) continue;
+      for (const StepId& id : steps_) add(id, take, f);
+    }
+  }
+
+  // Its owner has less of it, or frames beside it are shown between it and another.
+  bool isLookedAt(const Take& take, FrameIndex frame) const {
+    for (FrameIndex f{frame.value - take.step + 1}; f.value < frame.value + take.step; ++f.value)
+      if (f.value >= 0 && project_.hasMore(take, f)) return true;
+    return false;
   }
 
   void add(const StepId& id, const Take& take, FrameIndex frame) {

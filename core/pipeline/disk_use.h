@@ -51,7 +51,8 @@ struct DiskUse {
 };
 
 // In force are the keys of all steps for each frame in the take that owns it and, of what later frames read,
-// in takes that only build on it (leads, members that another take claims). Looks enter no key. Further what
+// in takes that only build on it (leads, members that another take claims), and those of earlier takes. Looks
+// enter no key. Further what
 // results in force were made from, and all results of blocked stages with what these were made from: nothing
 // tells which of them a panorama would bring back. Reads every picture of the capture once a process, for its
 // digest, and of results the records alone. Throws what Project::capture does, Cancelled.

@@ -12,24 +12,23 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/io/file.h"
 
 namespace beam {
 
 Digest digestOfFile(const std::filesystem::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) {
-    throw Error(Error::Kind::Data,
-                fmt::format("cannot open \"{}\": {}", path.string(), std::strerror(errno)));
-  }
+  if (descriptor < 0) throw openError(path, errno);
   Hasher hasher;
   std::vector<std::byte> piece(1u << 20);
   for (;;) {
     const ssize_t n = ::read(descriptor, piece.data(), piece.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
-      const std::string reason = std::strerror(errno);
+      const int why = errno;
       ::close(descriptor);
-      throw Error(Error::Kind::Storage, fmt::format("cannot read \"{}\": {}", path.string(), reason));
+      if (why == EISDIR) throw openError(path, why);
+      throw readError(path, why);
     }
     if (n == 0) break;
     hasher.add(std::span(piece.data(), static_cast<std::size_t>(n)));

@@ -10,7 +10,7 @@
 
 namespace beam {
 
-// Throws Error{Data} when the file is missing, Error{Storage} when reading fails.
+// Throws openError (io/file.h), Error{Storage} when reading fails.
 Digest digestOfFile(const std::filesystem::path& path);
 
 // Size, times and inode; empty when there is no such regular file. A hint that saves hashing, never the

@@ -69,11 +69,21 @@ std::optional<FileLock> FileLock::tryAcquire(const std::filesystem::path& path) 
 
 bool FileLock::isHeld(const std::filesystem::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  if (descriptor < 0) return false;
+  if (descriptor < 0) {
+    if (const Error why = openError(path, errno); why.kind() != Error::Kind::Data) throw why;
+    return false;
+  }
   struct flock question = wholeFile(F_WRLCK);
-  const bool held = ::fcntl(descriptor, F_OFD_GETLK, &question) == 0 && question.l_type != F_UNLCK;
+  const bool answered = ::fcntl(descriptor, F_OFD_GETLK, &question) == 0;
+  const int why = errno;
   ::close(descriptor);
-  return held;
+  if (!answered) {
+    throw Error(
+        Error::Kind::Storage,
+        fmt::format("cannot look at the lock \"{}\": {}; locks must work on the project's file system",
+                    path.string(), std::strerror(why)));
+  }
+  return question.l_type != F_UNLCK;
 }
 
 std::string FileLock::holderOf(const std::filesystem::path& path) {

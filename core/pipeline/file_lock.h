@@ -16,7 +16,7 @@ class FileLock {
   // Empty when somebody else, in this process or another, holds it. Creates the file and writes who holds it
   // into it. Throws Error{Storage} when the file cannot be made.
   static std::optional<FileLock> tryAcquire(const std::filesystem::path& path);
-  // Whether somebody holds it. Writes nothing.
+  // Whether somebody holds it. Writes nothing. Throws Error{Storage} where that cannot be told.
   static bool isHeld(const std::filesystem::path& path);
   // "host h, process 123", as the holder wrote; for messages.
   static std::string holderOf(const std::filesystem::path& path);

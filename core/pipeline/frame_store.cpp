@@ -69,6 +69,7 @@ struct FrameStore::Frame {
     try {
       slot.view = loadFrameView(capture, viewAt(i), index, downscale, progress);
     } catch (const Error& e) {
+      requireData(e);
       slot.problem = e.what();
     }
     slot.decoded = !slot.problem.empty() || !slot.view.photo.empty();

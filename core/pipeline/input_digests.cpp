@@ -27,16 +27,18 @@ std::string contentText(const FrameSource& source, ViewIndex view, FrameIndex fr
   try {
     return fmt::format("{} {}", digestOfValues(source.photo(view, frame).pixels).hex(),
                        digestOfValues(source.mask(view, frame).pixels).hex());
-  } catch (const Error&) {
+  } catch (const Error& e) {
+    requireData(e);
     return "unreadable";
   }
 }
 
-// A picture that cannot be read is left out of its frame (loadFrameViews), whatever the reason.
+// A picture that cannot be read is left out of its frame (loadFrameViews).
 std::string fileText(const InputDigests& digests, const std::filesystem::path& file) {
   try {
     return digests.file(file).hex();
-  } catch (const Error&) {
+  } catch (const Error& e) {
+    requireData(e);
     return "unreadable";
   }
 }

@@ -36,8 +36,9 @@ class InputDigests {
   Digest calibration(const CaptureSet& capture) const;
   // Those of the frame's views of `split` that are there, in the order of the views; what `pictures` is of.
   std::vector<PictureDigest> eachPicture(const CaptureSet& capture, FrameIndex frame, Split split) const;
-  // Pictures and masks of the frame's views of `split`. Never throws for one that is gone or cannot be read:
-  // a run leaves it out, and the state of a project must not hang on it.
+  // Pictures and masks of the frame's views of `split`. Does not throw for one that is gone or that nobody
+  // may read: a run leaves it out, and the state of a project must not hang on it. Error{Storage} where the
+  // disk fails.
   Digest pictures(const CaptureSet& capture, FrameIndex frame, Split split) const;
   Digest file(const std::filesystem::path& path) const;
 

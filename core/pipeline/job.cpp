@@ -2,6 +2,7 @@
 #include "core/pipeline/job.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <deque>
@@ -13,6 +14,9 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/io/file.h"
+#include "core/pipeline/checkpoint_files.h"
+#include "core/pipeline/disk_use.h"
+#include "core/pipeline/lock_reach.h"
 #include "core/pipeline/pending_reason.h"
 #include "core/pipeline/version.h"
 #include "core/render/device.h"
@@ -65,27 +69,51 @@ JobFinished Job::run(const RunRequest& request) {
     finished_.at_rest = true;
     finished_.notes.push_back(restNote());
   } catch (const Error& e) {
-    fail(e.kind(), e.what());
+    fail(e.kind(), e.kind() == Error::Kind::OutOfMemory ? memoryText() : e.what());
   } catch (const std::filesystem::filesystem_error& e) {
     const Error storage = storageError(e);
     fail(storage.kind(), storage.what());
   } catch (const std::bad_alloc&) {
-    fail(Error::Kind::OutOfMemory,
-         fmt::format(
-             "out of memory in {}{}; close other programs, or ask for fewer Gaussians or smaller pictures",
-             now_.step.empty() ? "the preparation" : now_.step.text(),
-             now_.frame ? ", frame " + now_.frame_name : std::string()));
+    fail(Error::Kind::OutOfMemory, memoryText());
   } catch (const std::exception& e) {
-    fail(Error::Kind::Bug, e.what());
+    fail(Error::Kind::Bug,
+         fmt::format("a bug of BEAM Studio{}: {}; what is finished is kept; please report it with the newest "
+                     "file of \"{}\"",
+                     placeText(), e.what(), (project_.folder() / "logs").string()));
   }
   finished_.seconds = secondsSince(started_);
   return finished_;
+}
+
+std::string Job::placeText() const {
+  if (now_.step.empty()) return " in the preparation";
+  return fmt::format(" in {}{}", now_.step.text(), now_.frame ? ", frame " + now_.frame_name : std::string());
+}
+
+// Memory may be short for this, too.
+std::string Job::memoryText() const try {
+  std::vector<std::string> ways;
+  if (!now_.step.empty()) {
+    const StepMemory& memory = project_.setup().stages.step(now_.step).memory;
+    const auto add = [&](const char* verb, const std::vector<std::string>& settings) {
+      for (const std::string& name : settings)
+        ways.push_back(fmt::format("{} {} (now {})", verb, name, toText(project_.value(name))));
+    };
+    add("raise", memory.raise);
+    add("lower", memory.lower);
+  }
+  return fmt::format("out of memory{}: {} are free; close other programs{}", placeText(),
+                     sizeText(availableMemoryBytes()),
+                     ways.empty() ? std::string() : fmt::format(", or {}", fmt::join(ways, " or ")));
+} catch (const std::exception&) {
+  return "out of memory; close other programs";
 }
 
 void Job::runAll(const RunRequest& request) {
   makeRunPlan(project_, request);  // what cannot be run changes no takes
   project_.forgetKeys();
   if (!project_.readOnly()) {
+    requireSharedLocks(project_.folder());
     Progress progress(stop_);
     project_.store().removeStale(progress);
   }
@@ -101,6 +129,19 @@ void Job::runAll(const RunRequest& request) {
   }
   runProjectSteps(plan);
   runFrames(plan);
+  tidyTakes();
+}
+
+// What is solved is solved, whatever keeps this from being done now: the next run does it.
+void Job::tidyTakes() {
+  now_ = {};
+  try {
+    Progress progress(stop_);
+    project_.dropOutdoneTakes(progress);
+  } catch (const Cancelled&) {
+  } catch (const std::exception& e) {
+    logDebug("earlier takes stay: {}", e.what());
+  }
 }
 
 void Job::runProjectSteps(const RunPlan& plan) {
@@ -112,7 +153,8 @@ void Job::runProjectSteps(const RunPlan& plan) {
 
 void Job::runFrames(const RunPlan& plan) {
   std::deque<Turn> todo(plan.turns.begin(), plan.turns.end());
-  pending_.insert(plan.turns.begin(), plan.turns.end());
+  planned_.insert(plan.turns.begin(), plan.turns.end());
+  pending_ = planned_;
   for (const StepId& step : plan.frame_steps) {
     if (readsPictures(project_.setup().stages.step(step))) picture_steps_.push_back(step);
   }
@@ -122,7 +164,13 @@ void Job::runFrames(const RunPlan& plan) {
     todo.pop_front();
     next_ = todo.empty() ? std::nullopt : std::optional(todo.front());
     restAfter(wishes_.after_frame);
-    if (runFrame(plan, turn) != Ended::Busy) {
+    const Ended ended = runFrame(plan, turn);
+    if (ended == Ended::Lost) {
+      todo.push_front(turn);
+      todo.push_front(*turnBefore(turn));
+      continue;
+    }
+    if (ended != Ended::Busy) {
       pending_.erase(turn);
       busy_in_a_row = 0;
       continue;
@@ -149,12 +197,14 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
     try {
       const Ended ended = runStep(step, turn);
       if (ended == Ended::Busy) return ended;
-      if (ended != Ended::Severed) continue;
+      if (ended != Ended::Lost) continue;
+      if (takeUpAgain(plan, *turnBefore(turn))) return ended;
       splitTakeAt(plan, turn);
       return runFrame(plan, turn);
     } catch (const Error& e) {
       if (!spoilsOneFrameOnly(e.kind())) throw;
       failFrame(refTo(step, turn), e.what());
+      failed_.insert(turn);
       drop(step, turn);
       failed = true;
     }
@@ -201,13 +251,29 @@ Job::Ended Job::runStep(const StepId& step, std::optional<Turn> turn) {
   return Ended::Computed;
 }
 
-// Whether this run is still to solve the frame before in the same take.
-bool Job::awaitsFrameBefore(const Turn& turn) const {
+std::optional<Turn> Job::turnBefore(const Turn& turn) const {
   const Take take = takeOf(turn);
   const std::optional<FrameIndex> before = take.before(turn.frame);
-  if (!before) return false;
+  if (!before) return std::nullopt;
+  const Turn lead{*before, turn.of}, own{*before, *before};
   const bool owned = project_.takeOf(*before) == take;
-  return pending_.contains({*before, turn.of}) || (owned && pending_.contains({*before, *before}));
+  return owned && planned_.contains(own) && !planned_.contains(lead) ? own : lead;
+}
+
+// Whether this run is still to solve the frame before in the same take.
+bool Job::awaitsFrameBefore(const Turn& turn) const {
+  const std::optional<Turn> before = turnBefore(turn);
+  return before && pending_.contains(*before);
+}
+
+bool Job::takeUpAgain(const RunPlan& plan, const Turn& turn) {
+  if (failed_.contains(turn) || !again_.insert(turn).second) return false;
+  for (const StepId& step : stepsOf(plan, turn)) {
+    acknowledged_.erase({step, turn});
+    expect(step, turn);
+  }
+  pending_.insert(turn);
+  return true;
 }
 
 std::vector<StepId> Job::stepsOf(const RunPlan& plan, const Turn& turn) const {
@@ -222,7 +288,7 @@ Job::Ended Job::afterPrevious(const StepInfo& step, const KeyIngredients& ingred
   for (const StepId& previous : step.later.previous) {
     const auto key = ingredients.previous.find(previous);
     if (key == ingredients.previous.end() || project_.store().verified(key->second)) continue;
-    if (!awaitsFrameBefore(turn)) return Ended::Severed;
+    if (!awaitsFrameBefore(turn)) return Ended::Lost;
     waits_for_[turn] = key->second;
     return Ended::Busy;
   }
@@ -309,6 +375,7 @@ void Job::compute(const StepRef& ref, const KeyIngredients& ingredients, const D
     checkInputs(ref, ingredients);
   });
   project_.store().clearFailure(key);
+  project_.store().clearCheckpoint(key);
   returnFreeMemory();
   const double seconds = secondsSince(step_started_);
   logInfo("{}{} done in {:.1f} s", ref.step.text(), ref.frame ? ", frame " + ref.frame_name : std::string(),
@@ -344,6 +411,8 @@ void Job::build(const StepRef& ref, const std::filesystem::path& folder, ResultR
     context.previous[step] = resultOf(step, key, ref);
   if (ref.frame && readsPictures(info)) context.frames = picturesFor(frame);
   context.is_later = record.ingredients.later;
+  CheckpointFiles checkpoint(project_.store().checkpointOf(record.key));
+  context.checkpoint = &checkpoint;
   project_.makeStage(ref.step.stage())->run(info.id, context);
   record.program_version = kProgramVersion;
   record.device = device_.info().title;

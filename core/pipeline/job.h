@@ -40,8 +40,8 @@ class Job {
   enum class Ended {
     Computed,
     Reused,
-    Busy,    // another process computes it, or what it builds on in the frame before
-    Severed  // the frame before will not have what it builds on
+    Busy,  // another process computes it, or what it builds on in the frame before
+    Lost   // the frame before has not got it, and this run has not tried to make it
   };
   using Clock = std::chrono::steady_clock;
   struct AtRest {};  // thrown between steps when a wish to stop after something is fulfilled
@@ -52,9 +52,14 @@ class Job {
   // Busy: come back later.
   Ended runFrame(const RunPlan& plan, const Turn& turn);
   Ended runStep(const StepId& step, std::optional<Turn> turn);
-  // Whether a step can begin now; Busy or Severed when what it reads of the frame before is not there.
+  // Whether a step can begin now; another answer when what it reads of the frame before is not there.
   Ended afterPrevious(const StepInfo& step, const KeyIngredients& ingredients, const Turn& turn);
   void splitTakeAt(const RunPlan& plan, const Turn& turn);
+  void tidyTakes();
+  // The turn of the frame before in the same take, the planned one where there is; none for the first.
+  std::optional<Turn> turnBefore(const Turn& turn) const;
+  // Gives the turn back to a frame that was done; false: it failed, or had it back already.
+  bool takeUpAgain(const RunPlan& plan, const Turn& turn);
   Take takeOf(const Turn& turn) const { return project_.takeOf(turn.of); }
   bool awaitsFrameBefore(const Turn& turn) const;
   std::vector<StepId> stepsOf(const RunPlan& plan, const Turn& turn) const;
@@ -76,6 +81,9 @@ class Job {
   void waitALittle();
   void restAfter(bool fulfilled) const;
   std::string restNote() const;
+  // " in surface.fit, frame 000002": of the step at work.
+  std::string placeText() const;
+  std::string memoryText() const;
 
   StepRef refTo(const StepId& step, std::optional<Turn> turn) const;
   double secondsSince(Clock::time_point start) const;
@@ -93,7 +101,8 @@ class Job {
   bool records_read_ = false;
   std::set<std::pair<StepId, std::optional<Turn>>> acknowledged_;
   std::set<std::pair<std::string, std::optional<Turn>>> stages_told_;
-  std::set<Turn> pending_;             // what this run has not finished
+  std::set<Turn> planned_, pending_;   // all turns of this run; those that it has not finished
+  std::set<Turn> failed_, again_;      // what failed in it; what had its turn again
   std::map<Turn, Digest> waits_for_;   // the result of the frame before that each busy one lacked
   std::vector<StepId> picture_steps_;  // of a frame
   std::unique_ptr<FrameStore> pictures_;

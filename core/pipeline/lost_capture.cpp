@@ -80,6 +80,7 @@ ImportedCapture captureFromResults(const Project& project) {
     try {
       found.set.views = viewsOfCalibration(readTextFile(folder / shown.cameras_file));
     } catch (const Error& e) {
+      requireData(e);
       found.warnings.emplace_back(e.what());
     }
   }

@@ -10,6 +10,7 @@
 #include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/word_list.h"
+#include "core/io/capture_description.h"
 #include "core/io/capture_reader.h"
 #include "core/io/image_file.h"
 #include "core/io/ply_file.h"
@@ -100,6 +101,7 @@ std::string kindInWords(const fs::path& path) {
     return fmt::format("is a capture: make a project of it with beam process \"{}\" --out Name.beam",
                        path.string());
   }
+  if (const std::string half = halfColmapModel(path); !half.empty()) return half;
   if (!fs::is_directory(path, failed) && !fs::is_regular_file(path, failed))
     return "is no regular file but a pipe or a device";
   return fs::is_directory(path, failed)

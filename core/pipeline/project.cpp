@@ -6,14 +6,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/io/file.h"
+#include "core/pipeline/lock_reach.h"
 #include "core/pipeline/lost_capture.h"
 #include "core/pipeline/output_target.h"
 #include "core/pipeline/path_kind.h"
 #include "core/pipeline/presets.h"
 #include "core/pipeline/project_history.h"
+#include "core/pipeline/project_merge.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -36,7 +40,7 @@ bool isFree(const fs::path& folder) {
 
 bool Project::isProject(const fs::path& folder) {
   std::error_code failed;
-  return fs::is_regular_file(folder / kDocumentFile, failed);
+  return isThere(folder / kDocumentFile) && fs::is_regular_file(folder / kDocumentFile, failed);
 }
 
 Project::Project(fs::path folder, ProjectDocument document, std::shared_ptr<const PipelineSetup> setup)
@@ -65,6 +69,7 @@ Project Project::open(const fs::path& folder, std::shared_ptr<const PipelineSetu
                             folder.string(), folder.string()));
   }
   Project project(folder, readProjectDocument(folder), std::move(setup));
+  project.saved_ = std::make_shared<const ProjectDocument>(project.document_);
   project.read_hold_out_ = project.document_.hold_out;
   return project;
 }
@@ -278,7 +283,7 @@ Project Project::withSettingsOf(const ProjectDocument& earlier, bool takes_too) 
   d.hold_out = earlier.hold_out;
   d.up = earlier.up;
   d.world = earlier.world;
-  if (takes_too) d.takes = earlier.takes;
+  if (takes_too) setTakes(d, takesOf(earlier));
   copy.finds_placement_ = false;
   copy.unit_m_.reset();
   if (other_import) copy.forgetCapture();
@@ -302,26 +307,47 @@ void Project::forgetCapture() {
   memo_.clear();
 }
 
-void Project::save() {
+bool Project::save() {
   document_.world = world();
   if (finds_placement_) document_.world_unknown = "{}";
   finds_placement_ = finds_placement_ && without_capture_;
   requireSavable(folder_, document_);
+  if (!isProject(folder_)) requireSharedLocks(folder_);  // before there is a folder
   std::error_code failed;
   fs::create_directories(folder_, failed);
   if (failed) {
     throw Error(Error::Kind::Storage,
                 fmt::format("cannot make the project folder \"{}\": {}", folder_.string(), failed.message()));
   }
-  if (isSaved(folder_, document_)) return;
+  if (const std::optional<ProjectDocument> disk = savedDocument(folder_)) {
+    ProjectDocument wanted = saved_ ? merged(*saved_, document_, *disk).document : document_;
+    setTakes(wanted, takesOf(*disk));
+    if (toJson(wanted) == toJson(*disk)) return takeOver(std::move(wanted));
+  }
   if (readOnly()) {
     throw Error(Error::Kind::Storage,
                 fmt::format("\"{}\" is read-only: the changed settings cannot be saved; make the "
                             "folder writable or copy it",
                             folder_.string()));
   }
-  writeProjectDocument(folder_, document_);
-  memo_.clear();  // takes may have come from disk
+  ProjectDocument document = document_;
+  writeProjectDocument(folder_, document, saved_.get());
+  return takeOver(std::move(document));
+}
+
+// What other programs wrote is in it, takes too.
+bool Project::takeOver(ProjectDocument document) {
+  const auto ofCapture = [](const ProjectDocument& d) {
+    return std::tie(d.capture, d.capture_files, d.hold_out, d.up, d.world);
+  };
+  const bool same_capture = ofCapture(document) == ofCapture(document_);
+  setTakes(document_, takesOf(document));
+  const bool others = toJson(document) != toJson(document_);
+  document_ = std::move(document);
+  saved_ = std::make_shared<const ProjectDocument>(document_);
+  memo_.clear();
+  if (!same_capture) forgetCapture();
+  return others;
 }
 
 // --- Capture ---

@@ -8,12 +8,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/base/fields.h"
 #include "core/base/hash.h"
+#include "core/base/progress.h"
 #include "core/io/capture_reader.h"
 #include "core/pipeline/input_digests.h"
 #include "core/pipeline/key_memo.h"
@@ -84,9 +86,11 @@ class Project {
   Project withSettingsOf(const ProjectDocument& earlier, bool takes_too = false) const;
   // Metres a unit of the capture; its place is found anew with it.
   void setUnit(double unit_m);
-  // Writes project.json when it differs from what is on disk; nothing else ever does. What a new project
-  // finds of its capture's unit and origin is kept from now on. Throws Error{Locked} or Error{Storage}.
-  void save();
+  // Writes to project.json what was changed here since it was read or saved; nothing else ever does. What
+  // other programs changed there meanwhile stays and is in force here, too, from now on. What a new project
+  // finds of its capture's unit and origin is kept from now on. Whether others changed more than takes.
+  // Throws Error{Locked} or Error{Storage}.
+  bool save();
 
   // --- Capture, read when first asked for and kept. ---
   const ImportedCapture& imported() const;
@@ -120,10 +124,17 @@ class Project {
 
   // --- Takes: which frames build on the frame before. ---
   std::vector<Take> takes() const;
+  std::vector<Take> earlierTakes() const;  // ProjectDocument::earlier_takes
   Take takeOf(FrameIndex frame) const;
   // Changes what other processes left in project.json, at once, and has the same here. A project that is
-  // read-only or not on disk yet changes here alone. Throws Error{Locked} or Error{Storage}.
+  // read-only or not on disk yet changes here alone. Those that go become earlier takes. Throws Error{Locked}
+  // or Error{Storage}.
   void changeTakes(const std::function<std::vector<Take>(std::vector<Take>)>& change);
+  // Forgets likewise earlier takes of which nothing is there that the others do not have. Throws Cancelled.
+  void dropOutdoneTakes(const Progress& progress);
+  // Whether the frame, claimed by the take or between two of its members, can be seen there from a step that
+  // its owner, and what it lies between now, lack.
+  bool hasMore(const Take& take, FrameIndex frame) const;
   // Makes `frame`, a member of `take`, the first of one, likewise; further changes by others do not reach
   // this project.
   void splitTake(const Take& take, FrameIndex frame);
@@ -155,12 +166,14 @@ class Project {
   // change.
   bool lacksAny(const std::vector<StepId>& steps, const Take& take, FrameIndex frame) const;
   StepState state(const StepId& step, FrameIndex frame) const;
+  StepState state(const StepId& step, const Take& take, FrameIndex frame) const;
   // Of a whole stage for a frame: the least finished of its steps that are for it; Done when there are none.
   StepState stageState(std::string_view stage, FrameIndex frame) const;
   std::string failureOf(const StepId& step, FrameIndex frame) const;  // message; empty: none
   // Folder of the finished result, every byte verified (once a process and version of the file); empty when
   // there is none. A damaged one is set aside with a warning and counts as none.
   std::optional<std::filesystem::path> result(const StepId& step, FrameIndex frame) const;
+  std::optional<std::filesystem::path> result(const StepId& step, const Take& take, FrameIndex frame) const;
   std::optional<ResultRecord> record(const StepId& step, FrameIndex frame) const;
 
   const ResultStore& store() const { return *store_; }
@@ -171,17 +184,23 @@ class Project {
  private:
   Project(std::filesystem::path folder, ProjectDocument document, std::shared_ptr<const PipelineSetup> setup);
   void forgetCapture();
+  bool takeOver(ProjectDocument document);
   const std::map<std::string, FieldValue>& preset() const;
   // `from`: of preset() or of the document. Error{Data} that names where it stands for what cannot be.
   void setSaved(Stage& stage, std::string_view stage_id, const std::map<std::string, FieldValue>& from) const;
   std::string lostCaptureText() const;
   bool savesTakes() const;
+  void changeSaved(const ChangeTakes& change);
+  std::set<StepId> shownIn(const Take& take, FrameIndex frame) const;  // StepShown::frame
+  std::set<StepId> shownBetween(const Take& take, const Between& between) const;
   Digest keyAt(const StepId& step, const Take& take, FrameIndex frame) const;
   void keepKeysBefore(const StepId& step, const Take& take, FrameIndex frame) const;
   const std::vector<StepId>& chainOf(const StepId& step) const;
 
   std::filesystem::path folder_;
   ProjectDocument document_;
+  std::shared_ptr<const ProjectDocument>
+      saved_;  // as project.json was read or written; null: it is not there
   std::shared_ptr<const PipelineSetup> setup_;
   std::shared_ptr<const ResultStore> store_;
   mutable std::map<std::string, FieldValue> preset_;

@@ -18,11 +18,14 @@
 #include "core/base/error.h"
 #include "core/base/fields_json.h"
 #include "core/base/json_words.h"
+#include "core/base/log.h"
 #include "core/base/word_list.h"
 #include "core/io/file.h"
 #include "core/io/look_json.h"
 #include "core/pipeline/file_digest.h"
 #include "core/pipeline/file_lock.h"
+#include "core/pipeline/lock_reach.h"
+#include "core/pipeline/project_merge.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -61,20 +64,40 @@ int wholeNumber(const Json& j, const char* what) {
   return j.get<int>();
 }
 
-void readTakes(const Json& j, ProjectDocument& document) {
-  require(j.is_array(), "takes", "a list");
+std::vector<SavedTake> savedTakes(const Json& j, const char* what) {
+  require(j.is_array(), what, "a list");
+  std::vector<SavedTake> takes;
   for (const Json& take : j) {
-    const SavedTake read{take.at("first").get<std::string>(), take.at("last").get<std::string>(),
+    const auto number = [&](const char* name, const char* in_words) {
+      return take.contains(name) ? wholeNumber(take[name], in_words) : 0;
+    };
+    const SavedTake read{take.at("first").get<std::string>(),
+                         take.at("last").get<std::string>(),
                          wholeNumber(take.at("step"), "step of a take"),
-                         take.contains("lead") ? wholeNumber(take["lead"], "lead of a take") : 0};
+                         number("lead", "lead of a take"),
+                         take.value("cut", false),
+                         number("lost_lead", "lost lead of a take")};
     if (read.step < 1 || read.lead < 0) {
       throw Error(
           Error::Kind::Data,
           fmt::format("take {} to {}: expected a step of 1 or more and a lead of 0 or more, found {} and {}",
                       read.first, read.last, read.step, read.lead));
     }
-    document.takes.push_back(read);
+    takes.push_back(read);
   }
+  return takes;
+}
+
+Json toJsonValue(const std::vector<SavedTake>& takes) {
+  Json list = Json::array();
+  for (const SavedTake& take : takes) {
+    Json saved = {{"first", take.first}, {"last", take.last}, {"step", take.step}};
+    if (take.lead > 0) saved["lead"] = take.lead;
+    if (take.cut) saved["cut"] = true;
+    if (take.lost_lead > 0) saved["lost_lead"] = take.lost_lead;
+    list.push_back(std::move(saved));
+  }
+  return list;
 }
 
 Json toJsonValue(const CapturePlacement& p, const std::string& unknown) {
@@ -120,13 +143,13 @@ struct OnDisk {
 
 // None: there is no file, or a damaged one, which is to be replaced.
 std::optional<OnDisk> onDisk(const fs::path& file) {
-  std::error_code failed;
-  if (!fs::is_regular_file(file, failed)) return std::nullopt;
-  std::string text = readTextFile(file);
+  if (!isThere(file)) return std::nullopt;
   try {
+    std::string text = readTextFile(file);
     ProjectDocument document = parseProjectDocument(text, file.string());
     return OnDisk{std::move(text), std::move(document)};
-  } catch (const Error&) {
+  } catch (const Error& e) {
+    requireData(e);
     return std::nullopt;
   }
 }
@@ -154,6 +177,16 @@ void requireReadable(const fs::path& project, const std::string& text) {
                   project.string(), text.size(), kMostTextBytes));
 }
 
+// Two programs may each have added some.
+void requireFewLooks(const fs::path& project, const ProjectDocument& document) {
+  if (document.looks.size() <= kMostLooks) return;
+  throw Error(
+      Error::Kind::Usage,
+      fmt::format("\"{}\" cannot be saved: with those that another program added it would have {} looks, "
+                  "the limit is {}; remove some",
+                  project.string(), document.looks.size(), kMostLooks));
+}
+
 ProjectDocument documentOf(Json j) {
   ProjectDocument document;
   document.id = j.at("id").get<std::string>();
@@ -166,10 +199,11 @@ ProjectDocument documentOf(Json j) {
   require(j.at("settings").is_object(), "settings", "an object");
   for (const auto& [key, value] : j.at("settings").items())
     document.settings[key] = parseFieldValue(value.dump());
-  if (j.contains("takes")) readTakes(j["takes"], document);
+  if (j.contains("takes")) document.takes = savedTakes(j["takes"], "takes");
+  if (j.contains("earlier_takes")) document.earlier_takes = savedTakes(j["earlier_takes"], "earlier takes");
   if (j.contains("looks")) document.looks = parseLooks(j["looks"].dump());
   for (const char* known : {"format", "id", "capture", "environment", "hold_out", "up", "world", "preset",
-                            "settings", "takes", "looks"}) {
+                            "settings", "takes", "earlier_takes", "looks"}) {
     j.erase(known);
   }
   document.unknown = j.dump();
@@ -198,6 +232,7 @@ std::string newProjectId() {
 
 FileLock lockProject(const fs::path& project) {
   using namespace std::chrono_literals;
+  requireSharedLocks(project);
   for (int attempt = 0; attempt < 40; ++attempt) {
     if (std::optional<FileLock> lock = FileLock::tryAcquire(project / "LOCK")) return std::move(*lock);
     std::this_thread::sleep_for(50ms);
@@ -222,7 +257,7 @@ std::vector<DescriptionFile> describeCapture(const fs::path& capture) {
          {"dataset.json", "transforms.json", "cameras.bin", "cameras.txt", "images.bin", "images.txt"}) {
       const fs::path file = capture / folder / name;
       std::error_code failed;
-      if (!fs::is_regular_file(file, failed)) continue;
+      if (!isThere(file) || !fs::is_regular_file(file, failed)) continue;
       found.push_back({(fs::path(folder) / name).generic_string(), fs::file_size(file), digestOfFile(file)});
     }
   }
@@ -272,11 +307,8 @@ std::string toJson(const ProjectDocument& document) {
   for (const auto& [key, value] : document.settings) {
     std::visit([&, &k = key](const auto& v) { j["settings"][k] = v; }, value);
   }
-  for (const SavedTake& take : document.takes) {
-    Json saved = {{"first", take.first}, {"last", take.last}, {"step", take.step}};
-    if (take.lead > 0) saved["lead"] = take.lead;
-    j["takes"].push_back(std::move(saved));
-  }
+  if (!document.takes.empty()) j["takes"] = toJsonValue(document.takes);
+  if (!document.earlier_takes.empty()) j["earlier_takes"] = toJsonValue(document.earlier_takes);
   if (!document.looks.empty()) j["looks"] = Json::parse(looksToJson(document.looks));
   const Json unknown = Json::parse(document.unknown);
   for (const auto& [key, value] : unknown.items()) j[key] = value;
@@ -321,35 +353,51 @@ void requireSavable(const fs::path& project, const ProjectDocument& document) {
   }
 }
 
-bool isSaved(const fs::path& project, const ProjectDocument& document) {
-  const std::optional<OnDisk> disk = onDisk(project / "project.json");
-  if (!disk) return false;
-  ProjectDocument here = document;
-  here.takes = disk->document.takes;
-  return disk->text == toJson(here);
+std::optional<ProjectDocument> savedDocument(const fs::path& project) {
+  std::optional<OnDisk> disk = onDisk(project / "project.json");
+  return disk ? std::optional(std::move(disk->document)) : std::nullopt;
 }
 
-void writeProjectDocument(const fs::path& project, ProjectDocument& document) {
+void writeProjectDocument(const fs::path& project, ProjectDocument& document, const ProjectDocument* base) {
   const FileLock lock = lockProject(project);
   const std::optional<OnDisk> disk = onDisk(project / "project.json");
-  if (disk) document.takes = disk->document.takes;
+  if (disk && base) {
+    MergedDocument both = merged(*base, document, disk->document);
+    document = std::move(both.document);
+    if (!both.both.empty()) {
+      logWarning("\"{}\" was changed by another program meanwhile, too; what is set here holds of {}",
+                 project.string(), shortList(both.both));
+    }
+  }
+  if (disk) setTakes(document, takesOf(disk->document));
   const std::string text = toJson(document);
   if (disk && disk->text == text) return;
   requireReadable(project, text);
-  if (!disk || !sameButForLooks(disk->document, document)) keepInHistory(project, text);
+  requireFewLooks(project, document);
+  // The copy first, so that none is missing; of a new project last, for a folder with a copy alone is one
+  // that has lost its project.json.
+  if (disk && !sameButForLooks(disk->document, document)) keepInHistory(project, text);
   writeFileAtomically(project / "project.json", text);
+  if (!disk) keepInHistory(project, text);
 }
 
-std::vector<SavedTake> changeSavedTakes(const fs::path& project, const ChangeTakes& change) {
+SavedTakes takesOf(const ProjectDocument& document) { return {document.takes, document.earlier_takes}; }
+
+void setTakes(ProjectDocument& document, SavedTakes takes) {
+  document.takes = std::move(takes.now);
+  document.earlier_takes = std::move(takes.earlier);
+}
+
+SavedTakes changeSavedTakes(const fs::path& project, const ChangeTakes& change) {
   const fs::path file = project / "project.json";
   const auto read = [&] { return parseProjectDocument(readTextFile(file), file.string()); };
-  std::vector<SavedTake> seen = read().takes;
+  SavedTakes seen = takesOf(read());
   if (change(seen) == seen) return seen;
   const FileLock lock = lockProject(project);
   ProjectDocument document = read();
-  std::vector<SavedTake> changed = change(document.takes);
-  if (changed == document.takes) return changed;
-  document.takes = changed;
+  SavedTakes changed = change(takesOf(document));
+  if (changed == takesOf(document)) return changed;
+  setTakes(document, changed);
   // No copy in history/: that is for what people change, and a run may change takes many times.
   const std::string text = toJson(document);
   requireReadable(project, text);

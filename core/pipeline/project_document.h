@@ -45,8 +45,11 @@ struct ProjectDocument {
   std::string preset = "standard";
   std::map<std::string, FieldValue> settings;  // what differs from the preset
   std::vector<SavedTake> takes;                // later ones win
-  std::vector<Look> looks;                     // names differ; in no key
-  std::string unknown = "{}";                  // members of a later version, kept as they are (JSON)
+  // Takes that lost frames to others which have less of them so far; the newest last. No frame is solved in
+  // them, and what is looked at comes from them until the others are as far.
+  std::vector<SavedTake> earlier_takes;
+  std::vector<Look> looks;     // names differ; in no key
+  std::string unknown = "{}";  // members of a later version, kept as they are (JSON)
 };
 
 // As toText writes it; throws Error{Usage}.
@@ -71,22 +74,33 @@ std::string newProjectId();
 // Whether a file of history/ is a version of ours, by its name: a number. The folder may hold others' files.
 bool isHistoryFile(const std::filesystem::path& file);
 
-// For the moment of a change of project.json. Throws Error{Locked} that names the holder when it stays taken.
+// For the moment of a change of project.json. Throws Error{Locked} that names the holder when it stays taken,
+// and what requireSharedLocks does.
 FileLock lockProject(const std::filesystem::path& project);
 
 // Throws Error{Usage} for a name of a file or camera that is no UTF-8: JSON would lose its bytes.
 void requireSavable(const std::filesystem::path& project, const ProjectDocument& document);
 
-// Whether project.json says what `document` says, takes apart.
-bool isSaved(const std::filesystem::path& project, const ProjectDocument& document);
+// What project.json says; none: it is not there, or damaged and to be replaced.
+std::optional<ProjectDocument> savedDocument(const std::filesystem::path& project);
 // Makes project.json of the folder say what `document` says, with a copy in history/, which keeps the last
-// twenty; none where looks are all that differs, for they change with every touch of a light. Takes are
-// another matter: processes change them while others work, so those on disk hold and go into `document`.
-// Takes LOCK for the moment: Error{Locked} names its holder when it stays taken.
-void writeProjectDocument(const std::filesystem::path& project, ProjectDocument& document);
+// twenty; none where looks are all that differs, for they change with every touch of a light. What another
+// program changed there since `base` was read stays and goes into `document` (merged); what both changed is
+// warned of and ours holds. Without `base` all is written. Takes are another matter: processes change them
+// while others work, so those on disk hold in any case. Takes LOCK for the moment: Error{Locked} names its
+// holder when it stays taken.
+void writeProjectDocument(const std::filesystem::path& project, ProjectDocument& document,
+                          const ProjectDocument* base = nullptr);
+// ProjectDocument's.
+struct SavedTakes {
+  std::vector<SavedTake> now, earlier;
+  bool operator==(const SavedTakes&) const = default;
+};
+SavedTakes takesOf(const ProjectDocument& document);
+void setTakes(ProjectDocument& document, SavedTakes takes);
 // Changes the takes in project.json and nothing else of it, whatever another process wrote there meanwhile;
 // gives them as they are now. Writes only when they differ. Throws like writeProjectDocument.
-using ChangeTakes = std::function<std::vector<SavedTake>(const std::vector<SavedTake>&)>;
-std::vector<SavedTake> changeSavedTakes(const std::filesystem::path& project, const ChangeTakes& change);
+using ChangeTakes = std::function<SavedTakes(const SavedTakes&)>;
+SavedTakes changeSavedTakes(const std::filesystem::path& project, const ChangeTakes& change);
 
 }  // namespace beam

@@ -35,6 +35,7 @@ HistoryEntry entryOf(const fs::path& file) {
     entry.summary = summaryOf(parseProjectDocument(readTextFile(file), file.string()));
     entry.readable = true;
   } catch (const Error& e) {
+    requireData(e);
     entry.summary = e.what();
   }
   return entry;

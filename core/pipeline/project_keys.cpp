@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "core/base/error.h"
@@ -15,6 +16,10 @@ namespace fs = std::filesystem;
 // --- Takes ---
 
 std::vector<Take> Project::takes() const { return readTakes(document_.takes, capture().frames); }
+
+std::vector<Take> Project::earlierTakes() const {
+  return readTakes(document_.earlier_takes, capture().frames);
+}
 
 Take Project::takeOf(FrameIndex frame) const {
   std::vector<Take>& owners = memo_.owners;
@@ -37,15 +42,73 @@ Project Project::sketch() const {
   return copy;
 }
 
+void Project::changeSaved(const ChangeTakes& change) {
+  setTakes(document_, savesTakes() ? changeSavedTakes(folder_, change) : change(takesOf(document_)));
+  memo_.clear();
+}
+
 void Project::changeTakes(const std::function<std::vector<Take>(std::vector<Take>)>& change) {
   const std::vector<std::string>& frames = capture().frames;
-  const auto changed = [&](const std::vector<SavedTake>& saved) {
-    const std::vector<Take> before = readTakes(saved, frames);
+  changeSaved([&](const SavedTakes& saved) -> SavedTakes {
+    const std::vector<Take> before = readTakes(saved.now, frames);
     const std::vector<Take> after = change(before);
-    return after == before ? saved : saveTakes(after, frames);
-  };
-  document_.takes = savesTakes() ? changeSavedTakes(folder_, changed) : changed(document_.takes);
-  memo_.clear();
+    if (after == before) return saved;
+    return {saveTakes(after, frames),
+            saveTakes(withEarlier(readTakes(saved.earlier, frames), before, after), frames)};
+  });
+}
+
+void Project::dropOutdoneTakes(const Progress& progress) {
+  std::vector<Take> outdone = earlierTakes();
+  std::erase_if(outdone, [&](const Take& take) {
+    for (FrameIndex f = take.begin(); f <= take.last; ++f.value) {
+      progress.check();
+      if (hasMore(take, f)) return true;
+    }
+    return false;
+  });
+  if (outdone.empty()) return;
+  const std::vector<SavedTake> dropped = saveTakes(outdone, capture().frames);
+  changeSaved([&](SavedTakes saved) {
+    std::erase_if(saved.earlier, [&](const SavedTake& take) {
+      return std::find(dropped.begin(), dropped.end(), take) != dropped.end();
+    });
+    return saved;
+  });
+}
+
+std::set<StepId> Project::shownIn(const Take& take, FrameIndex frame) const {
+  std::set<StepId> shown;
+  for (const StageInfo& info : setup_->stages.infos()) {
+    if (!blockedReason(info.id).empty()) continue;
+    for (const StepInfo& step : info.steps) {
+      const StepId id(info.id, step.id);
+      if (step.shown.frame && beam::applies(step, take, frame) && store_->has(key(id, take, frame)))
+        shown.insert(id);
+    }
+  }
+  return shown;
+}
+
+std::set<StepId> Project::shownBetween(const Take& take, const Between& between) const {
+  const std::set<StepId> a = shownIn(take, between.before), b = shownIn(take, between.after);
+  std::set<StepId> both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(both, both.end()));
+  return both;
+}
+
+bool Project::hasMore(const Take& take, FrameIndex frame) const {
+  const std::optional<Between> between = betweenOf(take, frame);
+  if (!between && !take.claims(frame)) return false;
+  const std::set<StepId> here = between ? shownBetween(take, *between) : shownIn(take, frame);
+  if (here.empty()) return false;
+  const Take owner = takeOf(frame);
+  std::set<StepId> others = shownIn(owner, frame);
+  if (const std::optional<Between> now = betweenOf(takes(), frame))
+    others.merge(shownBetween(takeOf(now->before), *now));
+  return std::any_of(here.begin(), here.end(), [&](const StepId& id) {
+    return !others.contains(id) && beam::applies(setup_->stages.step(id), owner, frame);
+  });
 }
 
 void Project::splitTake(const Take& take, FrameIndex frame) {
@@ -57,12 +120,12 @@ void Project::splitTake(const Take& take, FrameIndex frame) {
 
 void Project::readTakesAgain() {
   if (!savesTakes()) return;
-  document_.takes = readProjectDocument(folder_).takes;
+  setTakes(document_, takesOf(readProjectDocument(folder_)));
   memo_.clear();
 }
 
 void Project::adoptTakes(const Project& other) {
-  document_.takes = other.document_.takes;
+  setTakes(document_, takesOf(other.document_));
   memo_.clear();
 }
 
@@ -247,9 +310,14 @@ std::string Project::blockedReason(std::string_view stage) const {
 }
 
 StepState Project::state(const StepId& step, FrameIndex frame) const {
+  const bool blocked = !blockedReason(step.stage()).empty();  // then the capture may be gone
+  return blocked ? StepState::Blocked : state(step, takeOf(frame), frame);
+}
+
+StepState Project::state(const StepId& step, const Take& take, FrameIndex frame) const {
   if (!blockedReason(step.stage()).empty()) return StepState::Blocked;
-  if (!applies(step, frame)) return StepState::NotNeeded;
-  const Digest digest = key(step, frame);
+  if (!beam::applies(setup_->stages.step(step), take, frame)) return StepState::NotNeeded;
+  const Digest digest = key(step, take, frame);
   if (store_->has(digest)) return StepState::Done;
   if (store_->isLeased(digest)) return StepState::Running;
   return store_->failure(digest) ? StepState::Failed : StepState::Pending;
@@ -271,8 +339,14 @@ std::string Project::failureOf(const StepId& step, FrameIndex frame) const {
 }
 
 std::optional<fs::path> Project::result(const StepId& step, FrameIndex frame) const {
-  if (!blockedReason(step.stage()).empty() || !applies(step, frame)) return std::nullopt;
-  return store_->verified(key(step, frame));
+  if (!blockedReason(step.stage()).empty()) return std::nullopt;
+  return result(step, takeOf(frame), frame);
+}
+
+std::optional<fs::path> Project::result(const StepId& step, const Take& take, FrameIndex frame) const {
+  const bool needed = beam::applies(setup_->stages.step(step), take, frame);
+  if (!needed || !blockedReason(step.stage()).empty()) return std::nullopt;
+  return store_->verified(key(step, take, frame));
 }
 
 std::optional<ResultRecord> Project::record(const StepId& step, FrameIndex frame) const {

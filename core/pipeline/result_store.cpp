@@ -59,9 +59,16 @@ std::optional<Digest> keyNamed(const std::string& name) {
 
 enum class Kind { Folders, Files };
 
+// None: there is no such file.
+std::optional<std::uint64_t> sizeOf(const fs::path& file) {
+  if (!isThere(file)) return std::nullopt;
+  return onDisk([&] { return fs::file_size(file); });
+}
+
 // Ascending. Entries with other names are passed over.
 std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension, Kind kind) {
   std::vector<Digest> found;
+  if (!isThere(folder)) return found;
   std::error_code failed;
   for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
     // A folder where files are expected, or a file where folders are, is not ours.
@@ -69,6 +76,9 @@ std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension,
     if (i->path().extension() != extension || i->is_directory(gone) != (kind == Kind::Folders)) continue;
     if (const std::optional<Digest> key = keyNamed(i->path().stem().string())) found.push_back(*key);
   }
+  if (failed)
+    throw Error(Error::Kind::Storage,
+                fmt::format("cannot list \"{}\": {}", folder.string(), failed.message()));
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -143,6 +153,17 @@ std::vector<ResultRecord> ResultStore::recordsByAge() const {
 
 std::vector<Digest> ResultStore::keys() const { return keysIn(project_ / "results", "", Kind::Folders); }
 
+fs::path ResultStore::checkpointOf(const Digest& key) const { return project_ / "checkpoints" / key.hex(); }
+
+void ResultStore::clearCheckpoint(const Digest& key) const {
+  std::error_code ignored;
+  fs::remove_all(checkpointOf(key), ignored);
+}
+
+std::vector<Digest> ResultStore::checkpoints() const {
+  return keysIn(project_ / "checkpoints", "", Kind::Folders);
+}
+
 std::vector<Digest> ResultStore::leases() const { return keysIn(project_ / "leases", "", Kind::Files); }
 
 std::vector<Digest> ResultStore::failures() const {
@@ -155,13 +176,12 @@ fs::path ResultStore::halfBuiltFolderOf(const Digest& key) const {
 
 std::optional<ResultRecord> ResultStore::record(const Digest& key) const {
   const fs::path file = folderOf(key) / kRecordFile;
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return std::nullopt;
+  if (!isThere(file)) return std::nullopt;
   try {
     ResultRecord record = parseResultRecord(readTextFile(file));
     if (record.key == key) return record;
-  } catch (const Error&) {
-    // Unreadable means not finished; `verified` says so aloud and sets it aside.
+  } catch (const Error& e) {
+    requireData(e);  // it is not finished; `verified` says so aloud and sets it aside
   }
   return std::nullopt;
 }
@@ -169,20 +189,18 @@ std::optional<ResultRecord> ResultStore::record(const Digest& key) const {
 bool ResultStore::has(const Digest& key) const {
   const std::optional<ResultRecord> found = record(key);
   if (!found) return false;
-  for (const auto& [name, entry] : found->files) {
-    std::error_code failed;
-    if (fs::file_size(folderOf(key) / name, failed) != entry.bytes || failed) return false;
-  }
-  return true;
+  return std::all_of(found->files.begin(), found->files.end(), [&](const auto& file) {
+    return sizeOf(folderOf(key) / file.first) == file.second.bytes;
+  });
 }
 
 std::string ResultStore::findDamage(const Digest& key, const ResultRecord& record) const {
   for (const auto& [name, entry] : record.files) {
     const fs::path file = folderOf(key) / name;
-    std::error_code failed;
-    const std::uint64_t bytes = fs::file_size(file, failed);
-    if (failed) return fmt::format("{} is missing", name);
-    if (bytes != entry.bytes) return fmt::format("{}: expected {} bytes, found {}", name, entry.bytes, bytes);
+    const std::optional<std::uint64_t> bytes = sizeOf(file);
+    if (!bytes) return fmt::format("{} is missing", name);
+    if (*bytes != entry.bytes)
+      return fmt::format("{}: expected {} bytes, found {}", name, entry.bytes, *bytes);
     if (const Digest found = digestOfFile(file); found != entry.digest) {
       return fmt::format("{}: expected digest {}, found {}", name, entry.digest.hex(), found.hex());
     }
@@ -192,8 +210,7 @@ std::string ResultStore::findDamage(const Digest& key, const ResultRecord& recor
 
 std::optional<fs::path> ResultStore::verified(const Digest& key) const {
   const fs::path folder = folderOf(key);
-  std::error_code ignored;
-  if (!fs::is_directory(folder, ignored)) return std::nullopt;
+  if (!isThere(folder)) return std::nullopt;
   const std::optional<ResultRecord> found = record(key);
   if (!found) {
     quarantine(key, "result.json is missing or cannot be understood");
@@ -335,11 +352,11 @@ void ResultStore::clearFailure(const Digest& key) const {
 
 std::optional<FailureNote> ResultStore::failure(const Digest& key) const {
   const fs::path file = project_ / "failures" / (key.hex() + ".json");
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return std::nullopt;
+  if (!isThere(file)) return std::nullopt;
   try {
     return parseFailureNote(readTextFile(file));
-  } catch (const Error&) {
+  } catch (const Error& e) {
+    requireData(e);
     return std::nullopt;
   }
 }

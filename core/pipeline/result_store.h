@@ -60,8 +60,13 @@ class ResultStore {
   // Damaged results that were moved to quarantine/.
   std::vector<std::filesystem::path> setAside() const;
 
-  // Whose files are in leases/ and failures/, ascending. A file of a lease need not be held: a kill leaves
-  // it.
+  // What is computed so far of a result (CheckpointFiles). The caller holds the lease.
+  std::filesystem::path checkpointOf(const Digest& key) const;
+  void clearCheckpoint(const Digest& key) const;
+
+  // Whose files are in checkpoints/, leases/ and failures/, ascending. A file of a lease need not be held: a
+  // kill leaves it.
+  std::vector<Digest> checkpoints() const;
   std::vector<Digest> leases() const;
   std::vector<Digest> failures() const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/runner.h"
 
+#include "core/base/error.h"
 #include "core/pipeline/job.h"
 #include "core/render/device.h"
 
@@ -20,14 +21,18 @@ void Runner::start(Project project, RunRequest request, std::shared_ptr<ComputeD
   thread_ = std::jthread([this, project = std::move(project), request = std::move(request),
                           device = std::move(device)](std::stop_token stop) mutable {
     JobFinished finished;
-    {
+    try {
       Job job(
           project, *device, std::move(stop), wishes_,
           [this](JobEvent event) { events_.push(std::move(event)); }, preview_);
       finished = job.run(request);
+    } catch (const std::exception&) {  // not even the words for an error had room
+      finished.outcome = JobOutcome::Failed;
+      finished.kind = Error::Kind::OutOfMemory;
+      finished.message = "out of memory";  // short enough to need none
     }
     running_ = false;
-    events_.push(std::move(finished));
+    events_.pushLast(std::move(finished));
   });
 }
 

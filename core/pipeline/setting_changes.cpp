@@ -36,6 +36,7 @@ std::string placeOf(const Project& project) {
 // What of a version decides results; versions that differ in nothing else are one.
 std::string identityOf(const Project& project, bool takes) {
   ProjectDocument d = withoutLooks(project.document());
+  d.earlier_takes.clear();
   if (!takes) d.takes.clear();
   d.unknown = "{}";
   return toJson(d);
@@ -83,7 +84,8 @@ std::vector<Project> earlierVersions(const Project& project) {
       add(version, false, seen, versions);
       if (document.takes != project.document().takes)
         add(project.withSettingsOf(document, true), true, seen_takes, with_takes);
-    } catch (const Error&) {
+    } catch (const Error& e) {
+      requireData(e);
       continue;  // of a version, not of the project
     }
   }

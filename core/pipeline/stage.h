@@ -21,6 +21,7 @@
 
 namespace beam {
 
+class Checkpoint;
 class ComputeDevice;
 class FrameStore;
 
@@ -55,6 +56,11 @@ struct StepWork {
   std::string later_times = "";  // the same in later frames
 };
 
+// Settings that make a step take less memory, for those who are short of it.
+struct StepMemory {
+  std::vector<std::string> raise = {}, lower = {};  // full names
+};
+
 // What can be seen of a result, told to those who show a project and do not know its steps.
 struct StepShown {
   bool frame = false;   // a frame can be looked at from it, whatever the settings it was made with
@@ -78,6 +84,7 @@ struct StepInfo {
   Frames frames = Frames::Every;
   Later later = {};
   StepWork work = {};
+  StepMemory memory = {};
   StepShown shown = {};
 };
 
@@ -114,7 +121,8 @@ struct StepContext {
   // Of a later frame: folders of the results of the frame before, verified.
   std::map<StepId, std::filesystem::path> previous = {};
   bool is_later = false;
-  FrameStore* frames = nullptr;  // pictures already decoded; null: whoever wants some loads them
+  FrameStore* frames = nullptr;      // pictures already decoded; null: whoever wants some loads them
+  Checkpoint* checkpoint = nullptr;  // of this result; null: nothing is kept before it is whole
 
   const std::filesystem::path& input(const StepId& step) const { return inputs.at(step); }
   // Whether the step builds on the frame before; never for the first of a take.

@@ -162,6 +162,56 @@ void TakeSurveyor::keepLeadKeys(const Project& project) {
   }
 }
 
+void TakeSurveyor::keepEarlierKeys(const Project& project) {
+  earlier_.clear();
+  std::vector<Take> takes = project.earlierTakes();
+  const std::vector<Take> now = project.takes();
+  takes.insert(takes.end(), now.begin(), now.end());
+  const auto addKeys = [&](const StageInfo& info, const Take& take, FrameIndex f, std::vector<Digest>& keys) {
+    if (!project.blockedReason(info.id).empty()) return;
+    for (const StepInfo& step : info.steps)
+      if (step.per_frame && applies(step, take, f))
+        keys.push_back(project.key(StepId(info.id, step.id), take, f));
+  };
+  for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
+    for (auto take = takes.rbegin(); take != takes.rend(); ++take) {
+      const auto between = betweenOf(*take, FrameIndex{static_cast<std::int32_t>(f)});
+      const auto holds = [&](FrameIndex member) { return project.takeOf(member) == *take; };
+      if (!between || (holds(between->before) && holds(between->after))) continue;
+      EarlierPair pair{f, {}};
+      for (const StageInfo& info : project.setup().stages.infos()) {
+        std::vector<Digest>& keys = pair.keys.emplace_back();
+        addKeys(info, *take, between->before, keys);
+        addKeys(info, *take, between->after, keys);
+      }
+      earlier_.push_back(std::move(pair));
+    }
+  }
+}
+
+// As markInterpolated, of frames that the takes of now have nothing of yet.
+void TakeSurveyor::markEarlier(const Pass& pass, TakeSurvey& survey) const {
+  const auto isWhole = [&](const Digest& key) {
+    const auto record = records_.find(key);
+    return pass.results.contains(key) && record != records_.end() && record->second.whole;
+  };
+  for (const EarlierPair& pair : earlier_) {
+    if (!pass.stamps[pair.frame].empty()) continue;
+    std::string stamp;
+    for (std::size_t i = 0; i < survey.lanes.size(); ++i) {
+      const std::vector<Digest>& keys = pair.keys[i];
+      CellState& cell = survey.lanes[i].cells[pair.frame];
+      const bool follows = followsFrames(pass.project.setup().stages.infos()[i]);
+      const bool blank = cell == CellState::Empty || cell == CellState::NotNeeded;
+      if (!follows || !blank || keys.empty() || !std::all_of(keys.begin(), keys.end(), isWhole)) continue;
+      cell = CellState::Interpolated;
+      for (const Digest& key : keys) stamp += key.hex();
+    }
+    if (!stamp.empty())
+      survey.stamps[pair.frame] = digestOf("between " + survey.stamps[pair.frame].hex() + stamp);
+  }
+}
+
 // What was made as a lead comes last: the frame may have taken it over since, which no record tells.
 void TakeSurveyor::listLeftovers(const Pass& pass, TakeSurvey& survey) const {
   using Age = std::pair<bool, std::int64_t>;
@@ -253,8 +303,10 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
   if (now != known_for_) {
     keys_.clear();
     leads_.clear();
+    earlier_.clear();
     project.forgetKeys();
     if (!project.withoutCapture()) keepLeadKeys(project);
+    if (!project.withoutCapture()) keepEarlierKeys(project);
     known_for_ = now;
   }
   const fs::path results = project.store().folderOf({}).parent_path();
@@ -280,6 +332,7 @@ TakeSurvey TakeSurveyor::survey(const Project& project) {
     survey.stamps.push_back(settled ? own[f] : stampOf(pass.stamps[f] + textOf(survey.leftovers[f])));
   }
   markInterpolated(project, own, survey);
+  markEarlier(pass, survey);
   for (auto& [name, values] : pass.curves) survey.curves.push_back({name, std::move(values)});
   return survey;
 }

@@ -86,10 +86,19 @@ class TakeSurveyor {
   const Keys& keysOf(const Project& project, const StepId& step, bool per_frame);
   void readRecords(const Project& project, Pass& pass);
   void keepLeadKeys(const Project& project);
+  void keepEarlierKeys(const Project& project);
+  void markEarlier(const Pass& pass, TakeSurvey& survey) const;
   void surveyStep(const StepId& id, const StepInfo& step, Pass& pass, TakeSurvey& survey);
   void surveyStages(Pass& pass, TakeSurvey& survey);
   void surveyRecords(Pass& pass, TakeSurvey& survey) const;
   void listLeftovers(const Pass& pass, TakeSurvey& survey) const;
+
+  // A frame between two members of a take that does not own them, or not any more.
+  struct EarlierPair {
+    std::size_t frame;
+    std::vector<std::vector<Digest>> keys;  // by stage, of both members
+  };
+  std::vector<EarlierPair> earlier_;  // by frame, of the newest take first
 
   std::string known_for_;        // project and settings that keys_ belong to
   std::map<StepId, Keys> keys_;  // by step; one a frame, or a single one

@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 namespace beam {
 namespace {
 
-// `last` a member, and one way only to write a take of one frame.
+// `last` a member, and one way only to write a take of one frame; one that was cut off keeps its step, by
+// which it is put back.
 Take normal(Take take) {
   take.last.value -= (take.last.value - take.first.value) % take.step;
-  if (take.count() == 1) take.step = 1;
+  if (take.count() == 1 && !take.cut) take.step = 1;
   return take;
 }
 
@@ -26,8 +28,11 @@ class TakeReader {
     const auto first = at_.find(take.first), last = at_.find(take.last);
     if (first == at_.end() || last == at_.end() || last->second < first->second || take.step < 1)
       return std::nullopt;
-    const Take read = normal({{first->second}, {last->second}, take.step, take.lead});
-    return read.lead >= 0 && read.lead < read.count() ? std::optional(read) : std::nullopt;
+    const Take read =
+        normal({{first->second}, {last->second}, take.step, take.lead, take.cut, take.lost_lead});
+    const bool may_be = read.lead >= 0 && read.lead < read.count() && read.lost_lead >= 0 &&
+                        read.lost_lead <= first->second / read.step;
+    return may_be ? std::optional(read) : std::nullopt;
   }
 
   std::string why(const SavedTake& take) const {
@@ -142,7 +147,8 @@ std::vector<SavedTake> saveTakes(const std::vector<Take>& takes, const std::vect
   const auto name = [&](FrameIndex f) { return frames.at(static_cast<std::size_t>(f.value)); };
   std::vector<SavedTake> saved;
   saved.reserve(takes.size());
-  for (const Take& take : takes) saved.push_back({name(take.first), name(take.last), take.step, take.lead});
+  for (const Take& take : takes)
+    saved.push_back({name(take.first), name(take.last), take.step, take.lead, take.cut, take.lost_lead});
   return saved;
 }
 
@@ -154,13 +160,17 @@ Take takeOf(const std::vector<Take>& takes, FrameIndex frame) {
 
 std::optional<Between> betweenOf(const std::vector<Take>& takes, FrameIndex frame) {
   for (auto take = takes.rbegin(); take != takes.rend(); ++take) {
-    if (frame.value <= take->first.value || frame.value >= take->last.value || take->holds(frame)) continue;
-    const int past = (frame.value - take->first.value) % take->step;
-    const Between found{
-        {frame.value - past}, {frame.value - past + take->step}, static_cast<double>(past) / take->step};
-    if (takeOf(takes, found.before) == *take && takeOf(takes, found.after) == *take) return found;
+    const std::optional<Between> found = betweenOf(*take, frame);
+    if (found && takeOf(takes, found->before) == *take && takeOf(takes, found->after) == *take) return found;
   }
   return std::nullopt;
+}
+
+std::optional<Between> betweenOf(const Take& take, FrameIndex frame) {
+  if (frame <= take.first || frame >= take.last || take.holds(frame)) return std::nullopt;
+  const int past = (frame.value - take.first.value) % take.step;
+  return Between{
+      {frame.value - past}, {frame.value - past + take.step}, static_cast<double>(past) / take.step};
 }
 
 std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every) {
@@ -190,8 +200,37 @@ std::vector<Take> addTake(std::vector<Take> takes, const Take& wanted) {
   return takes;
 }
 
+std::vector<Take> healed(std::vector<Take> takes) {
+  for (std::size_t t = 0; t < takes.size();) {
+    const Take cut = takes[t];
+    takes[t].first.value -= cut.lost_lead * cut.step;
+    takes[t].lead += cut.lost_lead;
+    takes[t].lost_lead = 0;
+    const FrameIndex before{takes[t].first.value - cut.step};
+    // By its shape, whoever owns its frames meanwhile.
+    const auto other = std::find_if(takes.rbegin(), takes.rend(), [&](const Take& take) {
+      return take.last == before && take.step == cut.step && take.count() > 1;
+    });
+    if (cut.cut && other != takes.rend()) {
+      other->last = cut.last;
+      takes.erase(takes.begin() + static_cast<std::ptrdiff_t>(t));
+      continue;
+    }
+    const Take owner = takeOf(takes, before);
+    if (cut.cut && before.value >= 0 && owner.count() == 1) {
+      takes[t].first = before;
+      takes[t].cut = owner.cut;
+      const auto here = takes.begin() + static_cast<std::ptrdiff_t>(t);
+      t -= static_cast<std::size_t>(std::count(takes.begin(), here, owner));
+      std::erase(takes, owner);
+    }
+    ++t;
+  }
+  return takes;
+}
+
 std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_frames, int overlap) {
-  takes = segmentsOf(takes, frames);
+  takes = segmentsOf(healed(std::move(takes)), frames);
   const std::vector<int> owners = ownersOf(takes, frames);
   for (int begin = 0; begin < frames; ++begin) {
     if (owners[static_cast<std::size_t>(begin)] >= 0) continue;
@@ -204,17 +243,30 @@ std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_fra
   return takes;
 }
 
+std::vector<Take> withEarlier(std::vector<Take> earlier, const std::vector<Take>& before,
+                              const std::vector<Take>& after) {
+  const auto isIn = [](const std::vector<Take>& takes, const Take& take) {
+    return std::find(takes.begin(), takes.end(), take) != takes.end();
+  };
+  std::erase_if(earlier, [&](const Take& take) { return isIn(after, take) || isIn(before, take); });
+  for (const Take& take : before)
+    if (!isIn(after, take)) earlier.push_back(take);
+  if (earlier.size() > kMostEarlierTakes)
+    earlier.erase(earlier.begin(), earlier.end() - static_cast<std::ptrdiff_t>(kMostEarlierTakes));
+  return earlier;
+}
+
 std::vector<Take> splitTake(std::vector<Take> takes, const Take& take, FrameIndex frame) {
   const auto owner = std::find_if(takes.rbegin(), takes.rend(), [&](const Take& t) { return t == take; });
   if (owner == takes.rend() || !take.holds(frame) || frame == take.first) return takes;
   const auto at = owner.base() - 1;
   const int members = (frame.value - take.first.value) / take.step;
-  const Take rest = normal({frame, take.last, take.step, std::max(take.lead - members, 0)});
   if (frame <= take.begin()) {
-    *at = rest;
+    *at = normal({frame, take.last, take.step, take.lead - members, take.cut, take.lost_lead + members});
     return takes;
   }
-  *at = normal({take.first, *take.before(frame), take.step, take.lead});
+  const Take rest = normal({frame, take.last, take.step, 0, true});
+  *at = normal({take.first, *take.before(frame), take.step, take.lead, take.cut, take.lost_lead});
   takes.insert(at + 1, rest);
   return takes;
 }

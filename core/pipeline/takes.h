@@ -18,6 +18,10 @@ struct Take {
   // That many members at its head are there to build on and are frames of other takes: the overlap with the
   // segment before, so that no segment begins with a frame that was fitted alone.
   int lead = 0;
+  // Set where the frame before its first had no result to build on: it was cut from the take that ends there,
+  // or lost so many members of its lead. A run over all frames puts it back and tries again.
+  bool cut = false;
+  int lost_lead = 0;
 
   bool holds(FrameIndex frame) const;
   bool claims(FrameIndex frame) const { return holds(frame) && frame >= begin(); }
@@ -35,6 +39,8 @@ struct Take {
 struct SavedTake {
   std::string first, last;
   int step = 1, lead = 0;
+  bool cut = false;
+  int lost_lead = 0;
   bool operator==(const SavedTake&) const = default;
 };
 
@@ -57,6 +63,9 @@ struct Between {
 // Of the latest such take that owns both; none where `frame` stands in none.
 std::optional<Between> betweenOf(const std::vector<Take>& takes, FrameIndex frame);
 
+// The same of one take, whoever owns the two.
+std::optional<Between> betweenOf(const Take& take, FrameIndex frame);
+
 // What a run that names frames asks for: each run of consecutive ones, of which every `every`-th is taken.
 // `frames` ascend.
 std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every);
@@ -64,11 +73,17 @@ std::vector<Take> takesOfFrames(const std::vector<FrameIndex>& frames, int every
 Take withLead(Take take, int overlap);
 // The list with `wanted` as the owner of all it claims; earlier takes that it covers wholly are gone.
 std::vector<Take> addTake(std::vector<Take> takes, const Take& wanted);
-// The list of a run over all `frames` frames. Takes of one frame, with strides and inside of others are gone;
-// frames in no take lengthen the take before them or make takes of their own, which claim no more than
-// `segment_frames` (0: as many as they can) and have a lead of `overlap`.
+// The list in which what was cut off or lost is put back, as far as what it was cut from is there.
+std::vector<Take> healed(std::vector<Take> takes);
+// The list of a run over all `frames` frames, healed. Takes of one frame, with strides and inside of others
+// are gone; frames in no take lengthen the take before them or make takes of their own, which claim no more
+// than `segment_frames` (0: as many as they can) and have a lead of `overlap`.
 std::vector<Take> joinTakes(std::vector<Take> takes, int frames, int segment_frames, int overlap);
-// The list in which `frame` begins anew what was `take`; what that claims before it stays a take.
+// `earlier` with those of `before` that are not among `after`, the newest last; at most kMostEarlierTakes.
+inline constexpr std::size_t kMostEarlierTakes = 256;
+std::vector<Take> withEarlier(std::vector<Take> earlier, const std::vector<Take>& before,
+                              const std::vector<Take>& after);
+// The list in which `frame` begins anew what was `take`, cut off; what that claims before it stays a take.
 std::vector<Take> splitTake(std::vector<Take> takes, const Take& take, FrameIndex frame);
 
 }  // namespace beam

@@ -49,7 +49,10 @@ struct SampleScene::State final : PathSurfaces {
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
     auto* t = static_cast<unsigned*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
-    if (!v || !t) throw Error(Error::Kind::OutOfMemory, "Embree has no memory for the sample's mesh");
+    if (!v || !t)
+      throw Error(Error::Kind::OutOfMemory,
+                  "out of memory while the sample is made; close other programs, or make it with fewer "
+                  "--cameras or a smaller --size");
     for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].data(), 3, t + 3 * i);
     rtcAttachGeometry(scene, geometry);
     pose(surface);

@@ -44,7 +44,8 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                             .pixels = true,
                             .downscale = kDownscale,
                             .times = "materials.base_color_samples",
-                            .later_times = "materials.base_color_samples"}},
+                            .later_times = "materials.base_color_samples"},
+                   .memory = {.raise = {kDownscale}, .lower = {"surface.cap"}}},
                   {.id = "fit",
                    .title = "Fit materials",
                    .source = "BEAM 3.2",
@@ -53,6 +54,7 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                    .weight = 10,
                    .later = {.inputs = {kJointsStep}, .previous = {kMaterialsStep}},
                    .work = {.photographs = true, .pixels = true, .downscale = kDownscale},
+                   .memory = {.raise = {kDownscale}, .lower = {"surface.cap"}},
                    .shown = {.frame = true, .surface = kRefineStep, .last = true}}}};
     return kInfo;
   }

@@ -34,13 +34,19 @@ struct SolvedFolders {
   std::optional<fs::path> materials;
   bool refined = false;
 };
+// A frame between two members of a take.
+struct Around {
+  Take take;
+  Between between;
+};
 struct SolvedPair {
   SolvedFolders a, b;
+  Take take;
   Between between;
 };
 
 GaussianFrame interpolated(const SolvedPair& pair) {
-  const auto& [a, b, between] = pair;
+  const auto& [a, b, take, between] = pair;
   const bool materials = a.materials && b.materials;
   const auto read = [&](const SolvedFolders& s) {
     return readSplatPly(materials ? *s.materials / kMaterialsFile : s.skin / kCloudFile);
@@ -66,7 +72,10 @@ class ProjectSequence final : public GaussianSequence {
         survey_(std::move(survey)),
         labels_(labelled(project.capture().frames)),
         rate_(project.capture().frames_per_second),
-        capture_from_world_(project.capture().capture_from_world) {
+        capture_from_world_(project.capture().capture_from_world),
+        takes_(project.takes()),
+        layers_(project.earlierTakes()) {
+    layers_.insert(layers_.end(), takes_.begin(), takes_.end());
     for (const StageInfo& stage : project.setup().stages.infos()) {
       for (const StepInfo& step : stage.steps) steps_.insert(StepId(stage.id, step.id));
     }
@@ -84,7 +93,8 @@ class ProjectSequence final : public GaussianSequence {
     if (!own.empty() || shows_ == Shows::Solved) return own.empty() ? Digest{} : digestOf(own);
     const std::optional<SolvedPair> pair = solvedPair(frame);
     if (!pair) return Digest{};
-    return digestOf("between " + keysOf(pair->between.before) + keysOf(pair->between.after));
+    return digestOf("between " + keysIn(pair->take, pair->between.before) +
+                    keysIn(pair->take, pair->between.after));
   }
 
   FrameContent content(FrameIndex frame) const override {
@@ -130,22 +140,22 @@ class ProjectSequence final : public GaussianSequence {
   }
 
   std::optional<FrameIndex> before(FrameIndex frame) const override {
-    if (const auto between = trackedAround(frame)) return between->before;
-    std::lock_guard lock(mutex_);
-    const Take take = project_.takeOf(frame);
+    if (const auto around = trackedAround(frame)) return around->between.before;
+    const Take take = takeOf(frame);
     const std::optional<FrameIndex> earlier = take.before(frame);
-    return earlier && project_.takeOf(*earlier) == take ? earlier : std::nullopt;
+    return earlier && takeOf(*earlier) == take ? earlier : std::nullopt;
   }
 
   FrameJoints joints(FrameIndex frame) const override {
     if (const auto folder = result(kJointsStep, frame)) return readJoints(*folder);
-    const std::optional<Between> between = trackedAround(frame);
-    if (!between) return {};
-    const auto a = result(kJointsStep, between->before), b = result(kJointsStep, between->after);
+    const std::optional<Around> around = trackedAround(frame);
+    if (!around) return {};
+    const auto a = resultIn(around->take, kJointsStep, around->between.before),
+               b = resultIn(around->take, kJointsStep, around->between.after);
     if (!a || !b) return {};
     const FrameJoints from = readJoints(*a), to = readJoints(*b);
     if (to.restarted) return {};
-    return {interpolateJoints(from.pose, to.pose, between->share), false, true};
+    return {interpolateJoints(from.pose, to.pose, around->between.share), false, true};
   }
 
   std::optional<CarriedPose> carried(FrameIndex frame) const override {
@@ -157,14 +167,14 @@ class ProjectSequence final : public GaussianSequence {
   }
 
   std::optional<SequenceTake> take(FrameIndex frame) const override {
-    const std::optional<Between> between = trackedAround(frame);
-    const FrameIndex of = between ? between->after : frame;
-    const auto joints = result(kJointsStep, of);
+    const std::optional<Around> around = trackedAround(frame);
+    const FrameIndex of = around ? around->between.after : frame;
+    const Take members = around ? around->take : takeOf(of);
+    const auto joints = resultIn(members, kJointsStep, of);
     if (!joints) return std::nullopt;
-    const Take members = takeOf(of);
     SequenceTake take{members.begin(), {}, readPosePly(*joints / kRestPoseFile), {}};
     for (const FrameIndex f : members.claimed()) {
-      const auto tracked = f == take.first ? std::nullopt : result(kJointsStep, f);
+      const auto tracked = f == take.first ? std::nullopt : resultIn(members, kJointsStep, f);
       if (tracked && readTrackNote(*tracked).restarted) take.restarts.push_back(f);
     }
     if (const auto pose = carried(of)) take.binding = boundTo(pose->rest_skin, take.rest_joints);
@@ -180,41 +190,72 @@ class ProjectSequence final : public GaussianSequence {
   }
 
   // A pipeline need not have every step of the house.
-  std::optional<fs::path> result(const StepId& step, FrameIndex frame) const {
+  std::optional<fs::path> resultIn(const Take& take, const StepId& step, FrameIndex frame) const {
     if (!steps_.contains(step)) return std::nullopt;
     std::lock_guard lock(mutex_);
-    return project_.result(step, frame);
+    return project_.result(step, take, frame);
+  }
+  std::optional<fs::path> result(const StepId& step, FrameIndex frame) const {
+    return steps_.contains(step) ? resultIn(takeOf(frame), step, frame) : std::nullopt;
   }
   Digest key(const StepId& step, FrameIndex frame) const {
+    const Take take = takeOf(frame);
     std::lock_guard lock(mutex_);
-    return project_.key(step, frame);
+    return project_.key(step, take, frame);
+  }
+  bool isDoneIn(const Take& take, const StepId& step, FrameIndex frame) const {
+    if (!steps_.contains(step)) return false;
+    std::lock_guard lock(mutex_);
+    return project_.state(step, take, frame) == StepState::Done;
   }
   bool isDone(const StepId& step, FrameIndex frame) const {
-    if (!steps_.contains(step)) return false;
-    std::lock_guard lock(mutex_);
-    return project_.state(step, frame) == StepState::Done;
+    return steps_.contains(step) && isDoneIn(takeOf(frame), step, frame);
   }
   bool isFor(const StepId& step, FrameIndex frame) const {
-    if (!steps_.contains(step)) return false;
-    std::lock_guard lock(mutex_);
-    return project_.applies(step, frame);
+    return steps_.contains(step) && applies(project_.setup().stages.step(step), takeOf(frame), frame);
   }
-  Take takeOf(FrameIndex frame) const {
+  Take ownerOf(FrameIndex frame) const {
     std::lock_guard lock(mutex_);
     return project_.takeOf(frame);
   }
-  std::optional<Between> betweenOf(FrameIndex frame) const {
-    std::lock_guard lock(mutex_);
-    return beam::betweenOf(project_.takes(), frame);
+  // Of kFrameSteps, the first that there is; their number: none.
+  std::size_t rankIn(const Take& take, FrameIndex frame) const {
+    const auto first = std::find_if(kFrameSteps.begin(), kFrameSteps.end(),
+                                    [&](const StepId& step) { return isDoneIn(take, step, frame); });
+    return static_cast<std::size_t>(first - kFrameSteps.begin());
   }
-  // Keys of what there is of the frame itself.
-  std::string keysOf(FrameIndex frame) const {
+  // The one that the frame is looked at in: its owner or, while it is further there, another that claims it.
+  Take takeOf(FrameIndex frame) const {
+    Take best = ownerOf(frame);
+    const auto claims = [&](const Take& take) { return take.claims(frame) && take != best; };
+    if (std::none_of(layers_.begin(), layers_.end(), claims)) return best;
+    std::size_t rank = rankIn(best, frame);
+    for (auto take = layers_.rbegin(); take != layers_.rend(); ++take) {
+      if (rank == 0 || !claims(*take)) continue;
+      if (const std::size_t there = rankIn(*take, frame); there < rank) best = *take, rank = there;
+    }
+    return best;
+  }
+  // Takes with a stride in which the frame lies between two members, the one that holds first.
+  std::vector<Around> aroundsOf(FrameIndex frame) const {
+    std::vector<Around> all;
+    if (const std::optional<Between> between = betweenOf(takes_, frame))
+      all.push_back({ownerOf(between->before), *between});
+    for (auto take = layers_.rbegin(); take != layers_.rend(); ++take)
+      if (const std::optional<Between> between = betweenOf(*take, frame)) all.push_back({*take, *between});
+    return all;
+  }
+  // Keys of what there is of the frame.
+  std::string keysIn(const Take& take, FrameIndex frame) const {
     std::string keys;
     for (const StepId& step : {kMaterialsStep, kRefineStep, kFitStep, kMeshStep}) {
-      if (isDone(step, frame)) keys += key(step, frame).hex();
+      if (!isDoneIn(take, step, frame)) continue;
+      std::lock_guard lock(mutex_);
+      keys += project_.key(step, take, frame).hex();
     }
     return keys;
   }
+  std::string keysOf(FrameIndex frame) const { return keysIn(takeOf(frame), frame); }
 
   bool isSolved(FrameIndex frame) const {
     for (const StepId& step : kFrameSteps) {
@@ -229,26 +270,35 @@ class ProjectSequence final : public GaussianSequence {
     return std::nullopt;
   }
 
-  std::optional<SolvedFolders> solvedAt(FrameIndex frame, const StepId& step) const {
-    const auto skin = result(step, frame), joints = result(kJointsStep, frame);
+  std::optional<SolvedFolders> solvedAt(const Take& take, FrameIndex frame, const StepId& step) const {
+    const auto skin = resultIn(take, step, frame), joints = resultIn(take, kJointsStep, frame);
     if (!skin || !joints) return std::nullopt;
-    return SolvedFolders{*skin, *joints, result(kMaterialsStep, frame), step == kRefineStep};
+    return SolvedFolders{*skin, *joints, resultIn(take, kMaterialsStep, frame), step == kRefineStep};
   }
   // The frame has no result of its own and lies between two that are solved, both as far as both are.
   std::optional<SolvedPair> solvedPair(FrameIndex frame) const {
-    const std::optional<Between> between = betweenOf(frame);
-    if (!between || isSolved(frame)) return std::nullopt;
-    for (const StepId& step : {kRefineStep, kFitStep}) {
-      auto a = solvedAt(between->before, step), b = solvedAt(between->after, step);
-      if (!a || !b) continue;
-      if (!isCarried(b->skin)) return std::nullopt;
-      return SolvedPair{std::move(*a), std::move(*b), *between};
+    const std::vector<Around> arounds = aroundsOf(frame);
+    if (arounds.empty() || isSolved(frame)) return std::nullopt;
+    for (const auto& [take, between] : arounds) {
+      for (const StepId& step : {kRefineStep, kFitStep}) {
+        auto a = solvedAt(take, between.before, step), b = solvedAt(take, between.after, step);
+        if (!a || !b) continue;
+        if (!isCarried(b->skin)) return std::nullopt;
+        return SolvedPair{std::move(*a), std::move(*b), take, between};
+      }
     }
     return std::nullopt;
   }
   // Likewise of joints: it has none, and lies between two members of a take with a stride.
-  std::optional<Between> trackedAround(FrameIndex frame) const {
-    return result(kJointsStep, frame) ? std::nullopt : betweenOf(frame);
+  std::optional<Around> trackedAround(FrameIndex frame) const {
+    if (result(kJointsStep, frame)) return std::nullopt;
+    const std::vector<Around> arounds = aroundsOf(frame);
+    const auto tracked = std::find_if(arounds.begin(), arounds.end(), [&](const Around& a) {
+      return isDoneIn(a.take, kJointsStep, a.between.before) &&
+             isDoneIn(a.take, kJointsStep, a.between.after);
+    });
+    if (tracked != arounds.end()) return *tracked;
+    return arounds.empty() ? std::nullopt : std::optional(arounds.front());
   }
 
   const Project project_;
@@ -257,6 +307,8 @@ class ProjectSequence final : public GaussianSequence {
   const std::vector<FrameLabel> labels_;
   const double rate_;
   const Similarity3 capture_from_world_;
+  const std::vector<Take> takes_;
+  std::vector<Take> layers_;  // earlier takes, then those of now
   std::set<StepId> steps_;
   mutable std::mutex mutex_;  // over what project_ remembers of keys
 };

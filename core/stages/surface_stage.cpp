@@ -42,6 +42,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                                    .downscale = kDownscale,
                                    .times = "surface.iterations",
                                    .later_times = "surface.later.iterations"};
+    static const StepMemory kFitMemory{.raise = {kDownscale}, .lower = {"surface.cap"}};
     static const StageInfo kInfo{
         .id = "surface",
         .title = "Surface",
@@ -54,7 +55,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .inputs = {kImportStep, kScreenStep},
                    .weight = 1,
                    .frames = Frames::FirstOfTake,
-                   .work = {.photographs = true}},
+                   .work = {.photographs = true},
+                   .memory = {.raise = {kDownscale}}},
                   {.id = "fit",
                    .title = "Fit appearance",
                    .source = "BEAM 3.1, eq. 8",
@@ -64,6 +66,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .weight = 45,
                    .later = {.inputs = {kJointsStep}, .previous = {kJointsStep, kRefineStep}},
                    .work = kFitWork,
+                   .memory = kFitMemory,
                    .shown = {.frame = true}},
                   {.id = "refine",
                    .title = "Refine geometry",
@@ -73,6 +76,7 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .weight = 45,
                    .later = {.inputs = {kJointsStep}, .previous = {kRefineStep}},
                    .work = kFitWork,
+                   .memory = kFitMemory,
                    .shown = {.frame = true, .surface = kRefineStep}},
                   {.id = "score",
                    .title = "Score against the photographs",
@@ -80,13 +84,15 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
                    .inputs = {kImportStep, kScreenStep, kRefineStep},
                    .weight = 2,
                    .later = {.previous = {kRefineStep}},
-                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale}},
+                   .work = {.photographs = true, .pixels = true, .downscale = kDownscale},
+                   .memory = {.raise = {kDownscale}}},
                   {.id = "mesh",
                    .title = "Fuse a mesh",
                    .unmasked_version = 1,
                    .inputs = {kImportStep, kScreenStep, kRefineStep},
                    .weight = 4,
                    .work = {.photographs = true, .pixels = true, .downscale = kDownscale},
+                   .memory = {.raise = {"surface.mesh.voxel_m", kDownscale}},
                    .shown = {.frame = true, .surface = kRefineStep}}}};
     return kInfo;
   }
@@ -196,7 +202,8 @@ class SurfaceStage final : public StageOf<SurfaceOptions> {
     const GaussianCloud cloud = readSplatPly(c.input(kRefineStep) / kCloudFile).cloud;
     const MeshScope scope{.scene = c.capture.masks == MaskKind::None, .most_rows = kMostPlyRows};
     Progress fusing = c.progress.part(0.95, {});
-    const ExtractedMesh made = extractMesh(cloud, trainingCameras(c), options_.mesh, scope, c.device, fusing);
+    const ExtractedMesh made =
+        extractMesh(cloud, trainingCameras(c), options_.mesh, scope, c.device, fusing, c.checkpoint);
     if (made.reached) logWarning("surface.mesh: {}", limitText(made, scope));
     if (scope.scene) logInfo("surface.mesh: voxels of {:.3g} m", made.voxel_m);
     const Progress writing = c.progress.part(0.05, "writing the mesh");

@@ -77,7 +77,8 @@ class TrackStage final : public StageOf<TrackOptions> {
                    .work = {.pixels = true,
                             .downscale = kDownscale,
                             .times = "track.first_iterations",
-                            .later_times = "track.iterations"}}},
+                            .later_times = "track.iterations"},
+                   .memory = {.raise = {kDownscale}}}},
         .takes = {.segment_frames = "track.segment_frames", .overlap = "track.overlap"}};
     return kInfo;
   }

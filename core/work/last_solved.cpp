@@ -74,6 +74,7 @@ std::optional<Earlier> lastThatSolves(const Project& project, const WantedResult
       if (then.materials || !wanted.materials_if_any) return Earlier{earlier, then.materials};
       if (!without) without = Earlier{earlier, false};
     } catch (const Error& e) {
+      requireData(e);
       logDebug("settings of the history of \"{}\" are passed over: {}", project.folder().string(), e.what());
     }
   }

@@ -75,6 +75,7 @@ class Collector {
     try {
       if (const auto folder = project_.result(kScoreStep, index)) return readScores(*folder);
     } catch (const Error& e) {
+      requireData(e);
       logWarning("{}; the frame is shown without its views", e.what());
     }
     return {};
@@ -119,6 +120,15 @@ class Collector {
   std::set<std::string> told_;
 };
 
+// A pipeline need not have every step of the house.
+bool screens(const Project& project) {
+  for (const StageInfo& info : project.setup().stages.infos()) {
+    for (const StepInfo& step : info.steps)
+      if (StepId(info.id, step.id) == kScreenStep) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 QualityHistory qualityHistory(const Project& project, const Progress& progress) {
@@ -127,6 +137,7 @@ QualityHistory qualityHistory(const Project& project, const Progress& progress) 
 
 std::vector<LeftOutCamera> leftOutCameras(const Project& project, const Progress& progress) {
   std::vector<ScreenedFrame> frames;
+  if (!screens(project)) return {};
   for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
     progress.check();
     const auto index = static_cast<std::int32_t>(f);
@@ -134,6 +145,7 @@ std::vector<LeftOutCamera> leftOutCameras(const Project& project, const Progress
       if (const auto folder = project.result(kScreenStep, FrameIndex{index}))
         frames.push_back({project.capture().frames[f], index, readScreening(*folder).left_out});
     } catch (const Error& e) {
+      requireData(e);
       logWarning("{}; what the frame was fitted without is not known", e.what());
     }
   }

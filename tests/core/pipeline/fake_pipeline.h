@@ -29,8 +29,10 @@ namespace beam::testing {
 class FakeFrames final : public FrameSource {
  public:
   std::map<std::pair<int, int>, int> changed;  // (view, frame) -> other colour
+  std::function<void()> fault;                 // when a picture is read
   bool has(ViewIndex, FrameIndex) const override { return true; }
   Image<u8vec3> photo(ViewIndex view, FrameIndex frame) const override {
+    if (fault) fault();
     const auto found = changed.find({view.value, frame.value});
     const int value = found == changed.end() ? view.value * 16 + frame.value : found->second;
     return Image<u8vec3>(4, 4, u8vec3(static_cast<std::uint8_t>(value)));
@@ -142,6 +144,7 @@ inline std::vector<StageInfo> fakeStages() {
              .title = "Fit",
              .reads = {Reads::Pictures},
              .inputs = {"surface.seed"_step},
+             .memory = {.lower = {"surface.iterations"}},
              .shown = {.frame = true}},
             {.id = "refine",
              .title = "Refine",

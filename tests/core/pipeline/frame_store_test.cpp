@@ -46,6 +46,7 @@ class CountedFrames final : public FrameSource {
       changed_.notify_all();
       changed_.wait(lock, [&] { return closed_ != frame.value; });
       if (no_memory_for_ == frame.value) throw std::bad_alloc();
+      if (no_disk_for_ == frame.value) throw Error(Error::Kind::Storage, "the disk does not answer");
     }
     const int value = std::stoi(readTextFile(fileOf(view, frame)));
     if (value < 0)
@@ -75,6 +76,10 @@ class CountedFrames final : public FrameSource {
     std::lock_guard lock(mutex_);
     no_memory_for_ = frame;
   }
+  void refuseDisk(int frame) {
+    std::lock_guard lock(mutex_);
+    no_disk_for_ = frame;
+  }
 
  private:
   fs::path fileOf(ViewIndex view, FrameIndex frame) const {
@@ -84,7 +89,7 @@ class CountedFrames final : public FrameSource {
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   mutable std::map<int, int> decoded_;  // pictures by frame
-  int closed_ = -1, no_memory_for_ = -1;
+  int closed_ = -1, no_memory_for_ = -1, no_disk_for_ = -1;
 };
 
 class FrameStoreTest : public ::testing::Test {
@@ -109,6 +114,7 @@ class FrameStoreTest : public ::testing::Test {
     removeLogSink(sink_);
     source_->close(-1);
     source_->refuseMemory(-1);
+    source_->refuseDisk(-1);
   }
 
   LentViews lend(FrameStore& store, int frame, int downscale = 1) const {
@@ -131,6 +137,18 @@ class FrameStoreTest : public ::testing::Test {
 };
 
 using Counts = std::map<int, int>;
+
+TEST_F(FrameStoreTest, ADiskThatFailsForAMomentCostsNoCamera) {
+  FrameStore store(capture_);
+  source_->refuseDisk(2);
+  EXPECT_THROW(lend(store, 2), Error);
+  store.expect(FrameIndex{2});
+  EXPECT_THAT(greysOf(store, 1), ElementsAre(1, 21, 41, 61));  // decodes frame 2 ahead, in vain
+  EXPECT_THROW(lend(store, 2), Error);
+  source_->refuseDisk(-1);
+  EXPECT_THAT(greysOf(store, 2), ElementsAre(2, 22, 42, 62));
+  EXPECT_TRUE(warnings_.empty());
+}
 
 TEST_F(FrameStoreTest, LendsWhatLoadingGivesAndDecodesItOnceForAllSteps) {
   const std::vector<FrameView> loaded = loadFrameViews(capture_, {3}, Split::Train, 2, progress_);

@@ -139,9 +139,7 @@ TEST_F(ProjectLooks, SavedOverABrokenDocumentMakeACopyAsEver) {
 TEST_F(ProjectLooks, OnDiskOutliveAChangeOfTakes) {
   project.setLook(randomLook(1));
   project.save();
-  changeSavedTakes(house.root() / "p.beam", [](const auto&) {
-    return std::vector<SavedTake>{{"000", "002", 2}};
-  });
+  changeSavedTakes(house.root() / "p.beam", [](const auto&) { return SavedTakes{{{"000", "002", 2}}, {}}; });
   EXPECT_EQ(house.open().looks(), project.looks());
 }
 

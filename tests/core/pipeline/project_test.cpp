@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/log.h"
 #include "core/io/file.h"
 #include "core/pipeline/file_lock.h"
 #include "core/pipeline/project_report.h"
@@ -193,17 +194,76 @@ TEST(ProjectFolder, TakesOnDiskOutliveASaveOfTheSettingsOfAnother) {
   FakeHouse house;
   Project p = house.newProject();
   const auto seen = changeSavedTakes(house.root() / "p.beam", [](const auto& takes) {
-    EXPECT_TRUE(takes.empty());
-    return std::vector<SavedTake>{{"000", "002", 2}};
+    EXPECT_EQ(takes, SavedTakes());
+    return SavedTakes{{{"000", "002", 2}}, {}};
   });
-  EXPECT_EQ(seen, (std::vector<SavedTake>{{"000", "002", 2}}));
+  EXPECT_EQ(seen.now, (std::vector<SavedTake>{{"000", "002", 2}}));
   p.set("surface.iterations", 77);
   p.save();
-  EXPECT_EQ(house.open().document().takes, seen);
-  EXPECT_EQ(p.document().takes, seen);
+  EXPECT_EQ(house.open().document().takes, seen.now);
+  EXPECT_EQ(p.document().takes, seen.now);
   EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 77);
   changeSavedTakes(house.root() / "p.beam", [](const auto& takes) { return takes; });
   EXPECT_EQ(everythingIn(house.root() / "p.beam" / "history").size(), 2u) << "for what people change";
+}
+
+Look lookNamed(const std::string& name) {
+  Look look;
+  look.name = name;
+  return look;
+}
+
+TEST(ProjectSave, KeepsWhatAnotherProgramChangedMeanwhile) {
+  FakeHouse house;
+  Project ours = house.newProject(), theirs = house.open();
+  theirs.set("surface.iterations", 77);
+  theirs.setHoldOut({"top"});
+  theirs.setLook(lookNamed("dusk"));
+  theirs.save();
+  ours.set("surface.refine.normal_weight", 0.5);
+  ours.setLook(lookNamed("noon"));
+  ours.save();
+  for (const Project& p : {ours, house.open()}) {
+    EXPECT_EQ(std::get<int>(p.value("surface.iterations")), 77);
+    EXPECT_EQ(std::get<double>(p.value("surface.refine.normal_weight")), 0.5);
+    EXPECT_EQ(p.capture().views[2].split, Split::Test);
+    EXPECT_TRUE(p.look("dusk") && p.look("noon"));
+  }
+  theirs.reset("surface.iterations");
+  theirs.removeLook("dusk");
+  theirs.save();
+  EXPECT_EQ(std::get<double>(theirs.value("surface.refine.normal_weight")), 0.5);
+  const Project now = house.open();
+  EXPECT_EQ(std::get<int>(now.value("surface.iterations")), 10);
+  EXPECT_FALSE(now.look("dusk"));
+  EXPECT_TRUE(now.look("noon"));
+}
+
+TEST(ProjectSave, WithoutAChangeOfItsOwnWritesNoOldSettings) {
+  FakeHouse house;
+  Project ours = house.newProject(), theirs = house.open();
+  theirs.set("surface.iterations", 77);
+  theirs.save();
+  ours.save();
+  EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 77);
+}
+
+TEST(ProjectSave, WarnsOfWhatBothChangedAndOursHolds) {
+  FakeHouse house;
+  Project ours = house.newProject(), theirs = house.open();
+  theirs.set("surface.iterations", 77);
+  theirs.set("surface.solver", std::string("fancy"));
+  theirs.save();
+  ours.set("surface.iterations", 55);
+  ours.set("surface.solver", std::string("fancy"));
+  std::vector<std::string> warnings;
+  const int sink = addLogSink([&](const LogRecord& r) { warnings.push_back(r.text); });
+  ours.save();
+  removeLogSink(sink);
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::AllOf(HasSubstr("another program"),
+                                                                HasSubstr("surface.iterations"),
+                                                                ::testing::Not(HasSubstr("solver")))));
+  EXPECT_EQ(std::get<int>(house.open().value("surface.iterations")), 55);
 }
 
 TEST(ProjectFolder, ANewerMajorFormatIsRefusedByName) {

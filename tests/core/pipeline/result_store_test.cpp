@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "tests/support/few_descriptors.h"
 #include "tests/support/step_literal.h"
 #include "tests/support/temp_dir.h"
 
@@ -92,6 +93,17 @@ TEST_F(Store, AMissingOrShortFileIsFoundWithoutReading) {
   EXPECT_FALSE(store_.has(key_));
   EXPECT_FALSE(store_.verified(key_));
   EXPECT_EQ(quarantined(), 2);
+}
+
+TEST_F(Store, ADiskThatFailsForAMomentIsNoDamage) {
+  publish();
+  {
+    const FewDescriptors few;
+    EXPECT_THROW(store_.record(key_), Error);
+    EXPECT_THROW(store_.verified(key_), Error);
+  }
+  EXPECT_EQ(quarantined(), 0);
+  EXPECT_TRUE(freshlyVerified());
 }
 
 TEST_F(Store, AResultWithoutItsRecordIsNone) {

@@ -121,6 +121,19 @@ TEST(Run, OneBadFrameDoesNotStopTheOthers) {
   EXPECT_TRUE(house.open().failureOf("surface.fit"_step, FrameIndex{1}).empty());
 }
 
+TEST(Run, AReadErrorThatPassesEndsItAndPublishesNothingOfTheFrame) {
+  FakeHouse house;
+  const Project p = house.newProject();
+  house.frames->fault = [] { throw Error(Error::Kind::Storage, "the disk does not answer"); };
+  const JobFinished finished = house.finish(house.open());
+  EXPECT_EQ(finished.outcome, JobOutcome::Failed);
+  EXPECT_EQ(finished.kind, Error::Kind::Storage);
+  EXPECT_EQ(house.hooks.computed["surface.seed"_step], 0);
+  house.frames->fault = nullptr;
+  EXPECT_EQ(house.finish(house.open()).outcome, JobOutcome::Done);
+  EXPECT_EQ(p.state("surface.seed"_step, FrameIndex{1}), StepState::Done);
+}
+
 TEST(Run, LackOfMemoryEndsItWithItsOwnKind) {
   FakeHouse house;
   house.hooks.at_step = [](const StepId& step, StepContext&) {
@@ -129,7 +142,28 @@ TEST(Run, LackOfMemoryEndsItWithItsOwnKind) {
   const JobFinished finished = house.finish(house.newProject());
   EXPECT_EQ(finished.outcome, JobOutcome::Failed);
   EXPECT_EQ(finished.kind, Error::Kind::OutOfMemory);
-  EXPECT_THAT(finished.message, HasSubstr("surface.fit"));
+  EXPECT_THAT(finished.message, HasSubstr("out of memory in surface.fit, frame 000"));
+  EXPECT_THAT(finished.message, HasSubstr("are free"));
+  EXPECT_THAT(finished.message, HasSubstr("lower surface.iterations (now 10)"));
+
+  house.hooks.at_step = [](const StepId& step, StepContext&) {
+    if (step == "surface.seed"_step) throw Error(Error::Kind::OutOfMemory, "a library says so");
+  };
+  const JobFinished other = house.finish(house.newProject("q.beam"));
+  EXPECT_EQ(other.kind, Error::Kind::OutOfMemory);
+  EXPECT_THAT(other.message, HasSubstr("surface.seed"));
+  EXPECT_THAT(other.message, ::testing::Not(HasSubstr("surface.iterations"))) << "not of that step";
+}
+
+TEST(Run, AFaultOfOurOwnSaysWhereItWasAndWhatToDo) {
+  FakeHouse house;
+  house.hooks.at_step = [](const StepId& step, StepContext&) {
+    if (step == "surface.fit"_step) throw std::out_of_range("vector::_M_range_check");
+  };
+  const JobFinished finished = house.finish(house.newProject());
+  EXPECT_EQ(finished.kind, Error::Kind::Bug);
+  for (const char* part : {"surface.fit, frame 000", "vector::_M_range_check", "report it", "logs"})
+    EXPECT_THAT(finished.message, HasSubstr(part));
 }
 
 TEST(Run, ACancelEndsItSoonAndLeavesOnlyWholeResults) {

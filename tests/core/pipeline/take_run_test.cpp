@@ -124,7 +124,7 @@ TEST_F(TakeRun, AReadOnlyProjectKeepsTakesInMemory) {
   EXPECT_THAT(p.takes(), ElementsAre(Take{{0}, {5}, 1}));
   p.readTakesAgain();
   p.splitTake({{0}, {5}, 1}, {4});
-  EXPECT_THAT(p.takes(), ElementsAre(Take{{0}, {3}, 1}, Take{{4}, {5}, 1}));
+  EXPECT_THAT(p.takes(), ElementsAre(Take{{0}, {3}, 1}, Take{{4}, {5}, 1, 0, true}));
   std::filesystem::permissions(p.folder(), std::filesystem::perms(0755));
   EXPECT_EQ(everythingIn(p.folder()), before);
   EXPECT_THAT(saved(), ::testing::IsEmpty());
@@ -200,14 +200,40 @@ TEST_F(TakeRun, AFailedFrameEndsItsTakeAndTheNextBeginsAnother) {
   EXPECT_LE(most, 1 + 1e-9);
   EXPECT_EQ(failed, 1u);
   EXPECT_THAT(warning, HasSubstr("frame 003 begins a new take"));
-  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "002", 1}, SavedTake{"003", "005", 1}));
+  const SavedTake cut{"003", "005", 1, 0, true};
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "002", 1}, cut));
   EXPECT_EQ(house_.hooks.computed.at("surface.fit"_step), 2);
   EXPECT_EQ(house_.hooks.computed.at("materials.bake"_step), 5);
   EXPECT_EQ(house_.open().state("surface.refine"_step, {2}), StepState::Failed);
 
+  house_.hooks.computed.clear();
+  EXPECT_EQ(house_.finish(house_.open()).outcome, JobOutcome::DoneWithFailures);
+  EXPECT_EQ(house_.hooks.computed, Counts()) << "it fails again, and the rest stays";
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "002", 1}, cut));
+
   house_.hooks.at_step = nullptr;
-  EXPECT_EQ(countsOf({}), (Counts{{"surface.refine"_step, 1}, {"materials.bake"_step, 1}}))
-      << "the rest stays";
+  EXPECT_EQ(countsOf({}),
+            (Counts{{"track.pose"_step, 2}, {"surface.refine"_step, 4}, {"materials.bake"_step, 4}}))
+      << "what follows builds on it now";
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "005", 1}));
+  EXPECT_TRUE(house_.open().earlierTakes().empty());
+}
+
+TEST_F(TakeRun, ADamagedResultOfTheFrameBeforeIsComputedAgainAndCutsNothing) {
+  house_.newProject();
+  house_.finish(house_.open());
+  const auto calm = productsOf(house_.root() / "p.beam");
+  const Project p = house_.open();
+  std::filesystem::remove_all(p.store().folderOf(p.key("track.pose"_step, {3})));
+  std::filesystem::remove_all(p.store().folderOf(p.key("surface.refine"_step, {3})));
+  const std::filesystem::path before = p.store().folderOf(p.key("surface.refine"_step, {2})) / "data.txt";
+  house_.hooks.at_step = [&](const StepId& step, StepContext& c) {
+    // The turn of frame 2 is over, that of frame 3 has begun.
+    if (step == "track.pose"_step && c.frame.value == 3) std::ofstream(before, std::ios::in) << '!';
+  };
+  EXPECT_EQ(countsOf({}), (Counts{{"track.pose"_step, 1}, {"surface.refine"_step, 2}}));
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"000", "005", 1}));
+  EXPECT_EQ(productsOf(house_.root() / "p.beam"), calm);
 }
 
 TEST_F(TakeRun, APictureThatIsGoneOrUnreadableSpoilsNeitherRunNorState) {
@@ -316,7 +342,7 @@ TEST_F(TakeRun, AFailedLeadShortensIt) {
   }
   EXPECT_EQ(told, 1);
   EXPECT_EQ(finished.outcome, JobOutcome::Done) << "all that was asked for is there";
-  EXPECT_THAT(saved(), ElementsAre(SavedTake{"002", "005", 1, 1}));
+  EXPECT_THAT(saved(), ElementsAre(SavedTake{"002", "005", 1, 1, false, 1}));
   EXPECT_EQ(house_.hooks.computed.at("materials.bake"_step), 3);
 }
 

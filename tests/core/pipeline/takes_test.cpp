@@ -12,6 +12,14 @@ using ::testing::IsEmpty;
 using Takes = std::vector<Take>;
 
 Take take(int first, int last, int step = 1, int lead = 0) { return {{first}, {last}, step, lead}; }
+Take cutOff(Take take) {
+  take.cut = true;
+  return take;
+}
+Take withoutSomeOfItsLead(Take take, int lost) {
+  take.lost_lead = lost;
+  return take;
+}
 
 std::vector<FrameIndex> framesOf(std::initializer_list<int> numbers) {
   std::vector<FrameIndex> frames;
@@ -125,15 +133,46 @@ TEST(Takes, SegmentsOfAWholeRunOverlap) {
 
 TEST(Takes, ASplitMakesTheFrameAFirstOne) {
   EXPECT_EQ(splitTake({take(0, 9), take(20, 29)}, take(0, 9), {4}),
-            (Takes{take(0, 3), take(4, 9), take(20, 29)}));
-  EXPECT_EQ(splitTake({take(0, 8, 4)}, take(0, 8, 4), {8}), (Takes{take(0, 4, 4), take(8, 8)}));
+            (Takes{take(0, 3), cutOff(take(4, 9)), take(20, 29)}));
+  EXPECT_EQ(splitTake({take(0, 8, 4)}, take(0, 8, 4), {8}), (Takes{take(0, 4, 4), cutOff(take(8, 8, 4))}));
   EXPECT_EQ(splitTake({take(0, 9)}, take(0, 9), {0}), (Takes{take(0, 9)}));
   EXPECT_EQ(splitTake({take(0, 9)}, take(0, 9), {12}), (Takes{take(0, 9)}));
   EXPECT_EQ(splitTake({take(0, 5)}, take(0, 9), {3}), (Takes{take(0, 5)})) << "another has changed it";
   const Take led = take(8, 19, 1, 2);
-  EXPECT_EQ(splitTake({led}, led, {9}), (Takes{take(9, 19, 1, 1)}));
-  EXPECT_EQ(splitTake({led}, led, {10}), (Takes{take(10, 19)}));
-  EXPECT_EQ(splitTake({led}, led, {12}), (Takes{take(8, 11, 1, 2), take(12, 19)}));
+  EXPECT_EQ(splitTake({led}, led, {9}), (Takes{withoutSomeOfItsLead(take(9, 19, 1, 1), 1)}));
+  EXPECT_EQ(splitTake({led}, led, {10}), (Takes{withoutSomeOfItsLead(take(10, 19), 2)}));
+  EXPECT_EQ(splitTake({led}, led, {12}), (Takes{take(8, 11, 1, 2), cutOff(take(12, 19))}));
+}
+
+TEST(Takes, WhatWasSplitIsPutBack) {
+  for (const Take& whole : {take(0, 9), take(0, 8, 4), take(8, 19, 1, 2), take(8, 19, 1, 3)}) {
+    const std::vector<FrameIndex> members = whole.frames();
+    for (std::size_t a = 1; a < members.size(); ++a) {
+      const Takes once = splitTake({take(0, 7), whole}, whole, members[a]);
+      EXPECT_EQ(healed(once), (Takes{take(0, 7), whole})) << members[a].value;
+      for (std::size_t b = a + 1; b < members.size(); ++b)
+        EXPECT_EQ(healed(splitTake(once, once.back(), members[b])), (Takes{take(0, 7), whole}))
+            << members[a].value << " and " << members[b].value;
+    }
+  }
+  EXPECT_EQ(healed({take(0, 3), cutOff(take(4, 9)), take(3, 3)}), (Takes{take(0, 9), take(3, 3)}))
+      << "another owns the frame before meanwhile";
+  EXPECT_EQ(healed({cutOff(take(4, 9)), take(0, 6, 3)}), (Takes{cutOff(take(4, 9)), take(0, 6, 3)}))
+      << "what it was cut from is not there";
+  EXPECT_EQ(healed({cutOff(take(4, 9)), take(3, 3)}), (Takes{take(3, 9)}));
+  EXPECT_EQ(healed({cutOff(take(4, 9))}), (Takes{take(3, 9)})) << "the frame before is alone";
+  EXPECT_EQ(joinTakes({take(0, 3), cutOff(take(4, 9))}, 12, 50, 0), (Takes{take(0, 11)}));
+}
+
+TEST(Takes, ThoseThatLoseFramesAreEarlierOnes) {
+  EXPECT_EQ(withEarlier({}, {take(0, 8, 4), take(9, 11)}, {take(0, 9), take(9, 11)}), (Takes{take(0, 8, 4)}));
+  EXPECT_EQ(withEarlier({take(0, 8, 2), take(0, 9)}, {take(0, 8, 4)}, {take(0, 9)}),
+            (Takes{take(0, 8, 2), take(0, 8, 4)}))
+      << "one that is back is none";
+  Takes many;
+  for (int i = 1; i < 400; ++i) many = withEarlier(many, {take(0, i)}, {take(0, i + 1)});
+  EXPECT_EQ(many.size(), kMostEarlierTakes);
+  EXPECT_EQ(many.back(), take(0, 399));
 }
 
 TEST(Takes, AreKeptByTheNamesOfTheirFrames) {

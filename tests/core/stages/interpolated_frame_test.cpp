@@ -10,6 +10,7 @@
 
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/pipeline/disk_use.h"
 #include "core/pipeline/take_survey.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/stages/project_sequence.h"
@@ -27,30 +28,35 @@ using ::testing::ElementsAre;
 constexpr float kTurn = 0.3f;  // radians a frame, about +Y
 
 std::vector<StageInfo> stages() {
-  return {
-      {"track",
-       "Track",
-       "",
-       {{.id = "joints",
-         .title = "Joints",
-         .reads = {Reads::Pictures},
-         .frames = Frames::InTakes,
-         .later = {.previous = {kJointsStep}}}}},
-      {"surface",
-       "Surface",
-       "",
-       {{.id = "fit",
-         .title = "Fit",
-         .reads = {Reads::Pictures},
-         .later = {.inputs = {kJointsStep}, .previous = {kFitStep}}},
-        {.id = "refine",
-         .title = "Refine",
-         .inputs = {kFitStep},
-         .later = {.inputs = {kJointsStep}, .previous = {kRefineStep}}}}},
-      {"materials",
-       "Materials",
-       "",
-       {{.id = "fit", .title = "Fit", .inputs = {kRefineStep}, .later = {.previous = {kMaterialsStep}}}}}};
+  return {{"track",
+           "Track",
+           "",
+           {{.id = "joints",
+             .title = "Joints",
+             .reads = {Reads::Pictures},
+             .frames = Frames::InTakes,
+             .later = {.previous = {kJointsStep}}}}},
+          {"surface",
+           "Surface",
+           "",
+           {{.id = "fit",
+             .title = "Fit",
+             .reads = {Reads::Pictures},
+             .later = {.inputs = {kJointsStep}, .previous = {kFitStep}},
+             .shown = {.frame = true}},
+            {.id = "refine",
+             .title = "Refine",
+             .inputs = {kFitStep},
+             .later = {.inputs = {kJointsStep}, .previous = {kRefineStep}},
+             .shown = {.frame = true, .surface = kRefineStep}}}},
+          {"materials",
+           "Materials",
+           "",
+           {{.id = "fit",
+             .title = "Fit",
+             .inputs = {kRefineStep},
+             .later = {.previous = {kMaterialsStep}},
+             .shown = {.frame = true, .surface = kRefineStep}}}}};
 }
 
 GaussianCloud stickAt(float frame) {
@@ -81,6 +87,15 @@ class Scout {
   }
 
   Project project() const { return *project_; }
+  // A run over all frames that stops in the joints of `stop_at`; -1: it does not.
+  void solveAll(int stop_at) {
+    house_.hooks.at_step = [this, stop_at](const StepId& step, StepContext& c) {
+      if (step == kJointsStep && c.frame.value == stop_at) throw Cancelled();
+      write(step, c);
+    };
+    house_.finish(*project_);
+    project_->readTakesAgain();
+  }
   std::filesystem::path folder() const { return house_.root(); }
 
  private:
@@ -195,6 +210,38 @@ TEST(ProjectSequence, AnswersSeveralThreadsAtOnceAndAlike) {
   std::vector<std::future<std::vector<vec3>>> together;
   for (int i = 0; i < 4; ++i) together.push_back(std::async(std::launch::async, all));
   for (auto& found : together) EXPECT_TRUE(found.get() == alone);
+}
+
+TEST(InterpolatedFrame, OfAScoutIsShownUntilAFullRunIsAsFar) {
+  Scout scout;
+  scout.solveAll(2);
+  const Project project = scout.project();
+  ASSERT_EQ(project.earlierTakes(), (std::vector<Take>{{{0}, {6}, 3}}));
+  const auto sequence = sequenceOf(project, Shows::Between);
+  for (int f = 0; f < 7; ++f) {
+    const auto shown = sequence->load({f});
+    ASSERT_TRUE(shown) << f;
+    EXPECT_EQ(shown->interpolated, f == 2 || f == 4 || f == 5) << f;
+    EXPECT_TRUE(shown->materials) << f;
+    EXPECT_EQ(sequence->content({f}).interpolated, shown->interpolated) << f;
+    EXPECT_NE(sequence->stamp({f}), Digest{}) << f;
+    const GaussianCloud expected = stickAt(static_cast<float>(f));
+    EXPECT_LT(glm::length(shown->cloud.position_m[7] - expected.position_m[7]), 1e-5f) << f;
+  }
+  EXPECT_TRUE(sequence->joints({5}).interpolated);
+  EXPECT_EQ(sequence->before({5}), FrameIndex{3});
+  TakeSurveyor surveyor;
+  const TakeSurvey survey = surveyor.survey(project);
+  EXPECT_EQ(survey.lanes[1].cells[1], CellState::Done);
+  EXPECT_EQ(survey.lanes[1].cells[4], CellState::Interpolated);
+  EXPECT_NE(survey.stamps[4], Digest{});
+  Progress progress;
+  EXPECT_EQ(diskUse(project, progress).others().count, 0) << "a clean leaves what is shown";
+
+  scout.solveAll(-1);
+  EXPECT_TRUE(scout.project().earlierTakes().empty());
+  EXPECT_FALSE(sequenceOf(scout.project(), Shows::Between)->load({4})->interpolated);
+  EXPECT_GT(diskUse(scout.project(), progress).others().count, 0);
 }
 
 TEST(InterpolatedFrame, IsRenderedOnlyWhereThatIsAskedFor) {
