@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `beam` shows on a terminal, and what becomes of words that standard output does not take.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pty.h>
@@ -171,6 +172,16 @@ TEST(StandardOutput, ThatIsFullEndsEveryCommandWith74) {
     EXPECT_EQ(said.code, 74) << command << "\n" << said.err;
     EXPECT_THAT(said.err, HasSubstr("standard output")) << command;
   }
+}
+
+TEST(StandardError, ThatIsFullEndsWith74WhereTheWorkWentWellAndSomethingWasToBeTold) {
+  const TempDir folder;
+  const std::string run =
+      fmt::format("$B process {} --out $F/p.beam --until capture", SampleHouse::capture().string());
+  EXPECT_EQ(inShell(folder, run + " 2> /dev/full").code, 74);
+  EXPECT_EQ(inShell(folder, run + " --quiet 2> /dev/full").code, 0) << "nothing was to be told";
+  EXPECT_EQ(inShell(folder, "$B status $F/none.beam 2> /dev/full").code, 65) << "what it came to is worse";
+  EXPECT_EQ(inShell(folder, "$B run $F/p.beam --set surface.iterations=x 2> /dev/full").code, 2);
 }
 
 }  // namespace
