@@ -120,8 +120,7 @@ int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
   } catch (const std::bad_alloc&) {
     console.error(
         "out of memory; close other programs, or ask for less at once: fewer --cameras, --frames or "
-        "--channels, "
-        "a smaller --size");
+        "--channels, a smaller --size");
     return exitCode(Error::Kind::OutOfMemory);
   } catch (const std::exception& e) {
     console.error(fmt::format("this is a bug of beam: {}", e.what()));

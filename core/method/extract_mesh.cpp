@@ -154,7 +154,7 @@ ExtractedMesh extractMesh(const GaussianCloud& cloud, std::span<const Camera> ca
   ExtractedMesh out;
   out.asked_m = options.voxel_m * (scope.scene ? sizeInPersons(bounds) : 1);
   std::optional<KeptFusion> kept;
-  if (checkpoint) kept.emplace(*checkpoint, digestOf(views, options, scope, bounds));
+  if (checkpoint) kept.emplace(*checkpoint, [&] { return digestOf(views, options, scope, bounds); });
   for (FusionTry attempt = kept ? kept->kept() : FusionTry();; ++attempt.number) {
     if (kept) kept->begin(attempt);
     out.voxel_m = out.asked_m * std::exp2(attempt.number / kStepsToTwice);

@@ -10,17 +10,20 @@
 #include "core/method/zero_surface.h"
 
 namespace beam {
-KeptFusion::KeptFusion(Checkpoint& checkpoint, const Digest& of)
-    : checkpoint_(checkpoint), reader_(checkpoint.kept()) {
+
+KeptFusion::KeptFusion(Checkpoint& checkpoint, std::function<Digest()> of)
+    : checkpoint_(checkpoint), of_(std::move(of)), reader_(checkpoint.kept()) {
+  if (!reader_) return;
+  const Digest own = std::exchange(of_, {})();
   try {
-    if (reader_) head_ = reader_->list<Head>().at(0);
+    head_ = reader_->list<Head>().at(0);
   } catch (const Error& damaged) {
     requireData(damaged);
   } catch (const std::out_of_range&) {
   }
-  if (head_.of == of) return;
+  if (head_.of == own) return;
   reader_.reset();
-  head_ = {.attempt = {}, .next = 0, .of = of};
+  head_ = {.attempt = {}, .next = 0, .of = own};
 }
 
 void KeptFusion::begin(const FusionTry& attempt) {
@@ -44,6 +47,7 @@ std::size_t KeptFusion::takeUp(std::size_t blocks, ZeroSurface& surface) {
 
 void KeptFusion::keep(std::size_t next, const ZeroSurface& surface, const Progress& progress) {
   if (!checkpoint_.due()) return;
+  if (of_) head_.of = std::exchange(of_, {})();
   head_.next = next;
   CheckpointWriter writer;
   writer.give(std::vector<Head>{head_});

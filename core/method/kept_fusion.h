@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,8 +25,9 @@ struct FusionTry {
 
 class KeptFusion {
  public:
-  // Looks at once what was kept, unless it is `of` something else.
-  KeptFusion(Checkpoint& checkpoint, const Digest& of);
+  // `of`: a digest of all that the fusion hangs on; asked for once, where something is kept or to be kept.
+  // What was kept of something else is passed over.
+  KeptFusion(Checkpoint& checkpoint, std::function<Digest()> of);
 
   // The one that was kept; the first where none was.
   const FusionTry& kept() const { return head_.attempt; }
@@ -45,6 +47,7 @@ class KeptFusion {
   };
 
   Checkpoint& checkpoint_;
+  std::function<Digest()> of_;                // empty: head_ has it
   std::unique_ptr<CheckpointReader> reader_;  // behind the head; null: there is nothing to take up
   Head head_;                                 // of what was kept, then of what is at work
 };

@@ -61,8 +61,12 @@ enum class Kind { Folders, Files };
 
 // None: there is no such file.
 std::optional<std::uint64_t> sizeOf(const fs::path& file) {
-  if (!isThere(file)) return std::nullopt;
-  return onDisk([&] { return fs::file_size(file); });
+  std::error_code failed;
+  const std::uint64_t bytes = fs::file_size(file, failed);
+  if (!failed) return bytes;
+  if (lastsUntilChanged(failed.value())) return std::nullopt;
+  throw Error(Error::Kind::Storage,
+              fmt::format("cannot examine \"{}\": {}", file.string(), failed.message()));
 }
 
 // Ascending. Entries with other names are passed over.
