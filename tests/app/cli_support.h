@@ -40,6 +40,15 @@ inline std::map<std::string, std::string> filesIn(const std::filesystem::path& f
   return files;
 }
 
+// Every file of the finished results that is a product, by its path in results/. Records hold times.
+inline std::map<std::string, std::string> productsIn(const std::filesystem::path& project) {
+  std::map<std::string, std::string> products = filesIn(project / "results");
+  std::erase_if(products, [](const auto& file) {
+    return file.first.ends_with("result.json") || file.first.front() == '.';  // half built
+  });
+  return products;
+}
+
 struct Said {
   int code = -1;  // exit code; minus the signal that ended it
   std::string out, err;

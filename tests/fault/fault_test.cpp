@@ -72,13 +72,6 @@ std::vector<Deed> deeds() {
   };
 }
 
-Files productsIn(const fs::path& project) {
-  Files products;
-  for (const auto& [name, bytes] : filesIn(project / "results"))
-    if (!name.ends_with("result.json") && name.front() != '.') products[name] = bytes;
-  return products;
-}
-
 class Faults : public ::testing::Test {
  protected:
   Faults() {

@@ -14,14 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::map<std::string, std::string> productsIn(const fs::path& project) {
-  std::map<std::string, std::string> products = filesIn(project / "results");
-  std::erase_if(products, [](const auto& file) {
-    return file.first.ends_with("result.json") || file.first.front() == '.';  // half built
-  });
-  return products;
-}
-
 class KilledTake : public ::testing::Test {
  protected:
   KilledTake() {
