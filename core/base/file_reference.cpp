@@ -20,6 +20,10 @@ bool lastsUntilChanged(int error_number) {
   return std::find(std::begin(kLasting), std::end(kLasting), error_number) != std::end(kLasting);
 }
 
+bool isAtOrBelow(const std::filesystem::path& inner, const std::filesystem::path& outer) {
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
 bool isThere(const fs::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0) return true;

@@ -17,6 +17,9 @@ bool lastsUntilChanged(int error_number);
 // the disk does not tell: that is neither.
 bool isThere(const std::filesystem::path& path);
 
+// Whether `inner` is `outer` or lies below it, by their names alone.
+bool isAtOrBelow(const std::filesystem::path& inner, const std::filesystem::path& outer);
+
 struct FileReference {
   std::string relative, absolute;  // '/' between their parts; `relative` may be empty
   bool empty() const { return relative.empty() && absolute.empty(); }

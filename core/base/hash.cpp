@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <new>
+
 #include "core/base/error.h"
 
 namespace beam {
@@ -28,8 +30,11 @@ Digest digestOf(std::string_view text) {
 }
 
 struct Hasher::State {
-  XXH3_state_t* xxh = XXH3_createState();
+  State() {
+    if (!xxh) throw std::bad_alloc();
+  }
   ~State() { XXH3_freeState(xxh); }
+  XXH3_state_t* xxh = XXH3_createState();
 };
 
 Hasher::Hasher() : state_(std::make_unique<State>()) { XXH3_128bits_reset(state_->xxh); }

@@ -15,6 +15,7 @@
 #include "core/base/parallel.h"
 #include "core/base/word_list.h"
 #include "core/io/capture_pictures.h"
+#include "core/io/file.h"
 #include "core/io/image_file.h"
 #include "core/io/splat_ply.h"
 #include "core/scene/environment.h"
@@ -134,10 +135,8 @@ void warnOfForeignPictures(const CaptureSet& set, const fs::path& capture,
   folders.erase(capture.lexically_normal());
   for (const fs::path& folder : folders) {
     std::vector<std::string> found;
-    std::error_code failed;
-    for (const auto& entry : fs::directory_iterator(folder, failed))
+    for (const fs::directory_entry& entry : entriesOf(folder))
       if (isForeignPicture(entry.path())) found.push_back(entry.path().filename().string());
-    std::sort(found.begin(), found.end());
     if (found.empty()) continue;
     warnings.push_back(
         fmt::format("\"{}\": expected photographs as PNG or JPEG, found also {}, which {} not used",

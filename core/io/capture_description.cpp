@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/word_list.h"
+#include "core/io/file.h"
 #include "core/scene/rig_focus.h"
 
 namespace beam {
@@ -32,7 +33,7 @@ bool isPicture(const std::filesystem::path& file) {
 std::map<std::string, std::filesystem::path> picturesIn(const std::filesystem::path& folder) {
   std::map<std::string, std::filesystem::path> found;
   if (!std::filesystem::is_directory(folder)) return found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  for (const std::filesystem::directory_entry& entry : entriesOf(folder)) {
     const std::filesystem::path& file = entry.path();
     const bool hidden = file.filename().string().front() == '.';  // macOS leaves "._name.png" beside pictures
     if (hidden || !isPicture(file) || !entry.is_regular_file()) continue;

@@ -334,6 +334,7 @@ ImportedCapture openCapture(const fs::path& folder, const ImportOptions& options
     for (const std::string& w : capture.warnings) logWarning("{}", w);
     return capture;
   } catch (const fs::filesystem_error& e) {
+    if (e.code() == std::errc::not_enough_memory) throw storageError(e);
     throw Error(Error::Kind::Storage,
                 fmt::format("\"{}\": the capture cannot be read: {}", folder.string(), e.what()));
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenEXR pictures; the only file that includes the library.
+#include <Iex.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -11,7 +12,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <set>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/io/content_seal.h"
@@ -26,8 +29,8 @@ constexpr int kRowsAtOnce = 256;  // of a block's 32 a whole number
 
 class MemoryIn final : public Imf::IStream {
  public:
-  MemoryIn(const std::string& name, std::vector<std::byte> bytes)
-      : IStream(name.c_str()), bytes_(std::move(bytes)) {}
+  MemoryIn(const std::string& name, std::span<const std::byte> bytes)
+      : IStream(name.c_str()), bytes_(bytes) {}
   bool read(char c[], int n) override {
     // The position comes from the file and may lie anywhere: no sum of it with `n`, which could wrap.
     if (n < 0 || at_ > bytes_.size() || static_cast<std::size_t>(n) > bytes_.size() - at_)
@@ -40,21 +43,28 @@ class MemoryIn final : public Imf::IStream {
   void seekg(std::uint64_t pos) override { at_ = static_cast<std::size_t>(pos); }
 
  private:
-  std::vector<std::byte> bytes_;
+  std::span<const std::byte> bytes_;
   std::size_t at_ = 0;
 };
 
+// The library writes in its destructors, too, and swallows there what is thrown: what failed is remembered.
 class MemoryOut final : public Imf::OStream {
  public:
   MemoryOut() : OStream("memory") {}
   void write(const char c[], int n) override {
-    if (at_ + static_cast<std::size_t>(n) > bytes.size()) bytes.resize(at_ + static_cast<std::size_t>(n));
+    try {
+      if (at_ + static_cast<std::size_t>(n) > bytes.size()) bytes.resize(at_ + static_cast<std::size_t>(n));
+    } catch (...) {
+      failed = true;
+      throw;
+    }
     std::memcpy(bytes.data() + at_, c, static_cast<std::size_t>(n));
     at_ += static_cast<std::size_t>(n);
   }
   std::uint64_t tellp() override { return at_; }
   void seekp(std::uint64_t pos) override { at_ = static_cast<std::size_t>(pos); }
   std::vector<std::byte> bytes;
+  bool failed = false;
 
  private:
   std::size_t at_ = 0;
@@ -68,18 +78,23 @@ class MemoryOut final : public Imf::OStream {
 // file.
 template <class Body>
 auto withExr(const std::filesystem::path& path, Body&& body) {
-  std::vector<std::byte> bytes = readFile(path, 1ull << 31);
+  const std::vector<std::byte> bytes = readFile(path, 1ull << 31);
   checkExrHeader(bytes, path);
-  try {
-    MemoryIn stream(path.string(), std::move(bytes));
-    Imf::InputFile file(stream, 0);
-    return body(file);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    bad(path, fmt::format("the OpenEXR picture cannot be read: {}", e.what()));
+  for (bool again = false;; again = true) {
+    try {
+      MemoryIn stream(path.string(), bytes);
+      Imf::InputFile file(stream, 0);
+      return body(file);
+    } catch (const Error&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& e) {
+      // The library words a lack of memory in its own ways; what was short may not be a second time.
+      const std::string_view words = e.what();
+      if (words.find("alloc") != std::string_view::npos) throw std::bad_alloc();
+      if (again) bad(path, fmt::format("the OpenEXR picture cannot be read: {}", words));
+    }
   }
 }
 
@@ -158,43 +173,69 @@ Planes readExr(const std::filesystem::path& path, const std::vector<std::string>
   });
 }
 
+namespace {
+
+// Of a picture that is being written: its header, and its channels in the precision of the file.
+struct Encoded {
+  Imf::Header header;
+  Imf::FrameBuffer frame;
+  std::vector<half> halves;  // `frame` points into it
+};
+
+Encoded encoded(int width, int height, std::span<const ExrChannel> channels, const FileNotes& notes) {
+  const std::size_t plane = static_cast<std::size_t>(width) * height;
+  const auto halves_of = std::count_if(channels.begin(), channels.end(),
+                                       [](const ExrChannel& c) { return c.precision == ExrPrecision::Half; });
+  Encoded e{Imf::Header(width, height), {}, {}};
+  e.header.compression() = Imf::PIZ_COMPRESSION;
+  for (const auto& [name, text] : sealable(notes)) e.header.insert(name, Imf::StringAttribute(text));
+  e.halves.reserve(plane * static_cast<std::size_t>(halves_of));
+  for (const ExrChannel& c : channels) {
+    if (e.header.channels().findChannel(c.name.c_str()))
+      throw Error(Error::Kind::Bug, fmt::format("two channels of an EXR picture are named {}", c.name));
+    const bool is_half = c.precision == ExrPrecision::Half;
+    const Imf::PixelType type = is_half ? Imf::HALF : Imf::FLOAT;
+    e.header.channels().insert(c.name.c_str(), Imf::Channel(type));
+    char* base = reinterpret_cast<char*>(const_cast<float*>(c.values));
+    if (is_half) {
+      base = reinterpret_cast<char*>(e.halves.data() + e.halves.size());
+      e.halves.insert(e.halves.end(), c.values, c.values + plane);
+    }
+    const std::size_t bytes = bytesOf(c.precision);
+    e.frame.insert(c.name.c_str(), Imf::Slice(type, base, bytes, bytes * static_cast<std::size_t>(width)));
+  }
+  return e;
+}
+
+// Whether the library finds each of its blocks.
+bool isWhole(std::span<const std::byte> bytes) {
+  MemoryIn stream("memory", bytes);
+  return Imf::InputFile(stream, 0).isComplete();
+}
+
+}  // namespace
+
 void writeExr(const std::filesystem::path& path, int width, int height, std::span<const ExrChannel> channels,
               const FileNotes& notes, const Progress* progress) {
-  std::size_t halves_of = 0, pixel_bytes = 0;
-  for (const ExrChannel& c : channels) {
-    halves_of += c.precision == ExrPrecision::Half;
-    pixel_bytes += bytesOf(c.precision);
-  }
+  std::size_t pixel_bytes = 0;
+  for (const ExrChannel& c : channels) pixel_bytes += bytesOf(c.precision);
   requireExrSize(width, height, channels.size(), pixel_bytes, path);
-  const std::size_t plane = static_cast<std::size_t>(width) * height;
   MemoryOut stream;
-  {
-    Imf::Header header(width, height);
-    header.compression() = Imf::PIZ_COMPRESSION;
-    for (const auto& [name, text] : sealable(notes)) header.insert(name, Imf::StringAttribute(text));
-    Imf::FrameBuffer frame;
-    std::vector<half> halves;
-    halves.reserve(plane * halves_of);  // slices point into it
-    for (const ExrChannel& c : channels) {
-      if (header.channels().findChannel(c.name.c_str()))
-        throw Error(Error::Kind::Bug, fmt::format("two channels of an EXR picture are named {}", c.name));
-      const bool is_half = c.precision == ExrPrecision::Half;
-      const Imf::PixelType type = is_half ? Imf::HALF : Imf::FLOAT;
-      header.channels().insert(c.name.c_str(), Imf::Channel(type));
-      char* base = reinterpret_cast<char*>(const_cast<float*>(c.values));
-      if (is_half) {
-        base = reinterpret_cast<char*>(halves.data() + halves.size());
-        halves.insert(halves.end(), c.values, c.values + plane);
+  const Encoded e = encoded(width, height, channels, notes);
+  // The picture and the stream are ours and sound: what the library complains of is a lack of memory, which
+  // it wraps into exceptions of its own or, in a destructor, swallows.
+  try {
+    {
+      Imf::OutputFile file(stream, e.header, 0);
+      file.setFrameBuffer(e.frame);
+      for (int y = 0; y < height; y += kRowsAtOnce) {
+        if (progress) progress->check();
+        file.writePixels(std::min(kRowsAtOnce, height - y));
       }
-      const std::size_t bytes = bytesOf(c.precision);
-      frame.insert(c.name.c_str(), Imf::Slice(type, base, bytes, bytes * static_cast<std::size_t>(width)));
     }
-    Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(frame);
-    for (int y = 0; y < height; y += kRowsAtOnce) {
-      if (progress) progress->check();
-      file.writePixels(std::min(kRowsAtOnce, height - y));
-    }
+    if (stream.failed || !isWhole(stream.bytes)) throw std::bad_alloc();
+  } catch (const Iex::BaseExc&) {
+    throw std::bad_alloc();
   }
   seal(stream.bytes);
   writeFileAtomically(path, stream.bytes);

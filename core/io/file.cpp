@@ -20,9 +20,14 @@ namespace {
 constexpr std::size_t kPiece = 4u << 20;
 constexpr std::size_t kUnsynced = 32u << 20;  // a slow disk takes less than half a second for it
 
+Error::Kind kindOf(int error_number) {
+  return error_number == ENOMEM ? Error::Kind::OutOfMemory : Error::Kind::Storage;
+}
+
 [[noreturn]] void storageError(std::string_view doing, const std::filesystem::path& path) {
-  throw Error(Error::Kind::Storage,
-              fmt::format("cannot {} \"{}\": {}", doing, path.string(), std::strerror(errno)));
+  const int reason = errno;
+  throw Error(kindOf(reason),
+              fmt::format("cannot {} \"{}\": {}", doing, path.string(), std::strerror(reason)));
 }
 
 class Descriptor {
@@ -126,7 +131,7 @@ void replaceFile(const std::filesystem::path& path, Write&& write) {
 }  // namespace
 
 Error openError(const std::filesystem::path& path, int error_number) {
-  return {lastsUntilChanged(error_number) ? Error::Kind::Data : Error::Kind::Storage,
+  return {lastsUntilChanged(error_number) ? Error::Kind::Data : kindOf(error_number),
           fmt::format("cannot open \"{}\": {}", path.string(), std::strerror(error_number))};
 }
 
@@ -167,12 +172,42 @@ void writeFileAtomically(const std::filesystem::path& path, const std::function<
 }
 
 Error readError(const std::filesystem::path& path, int error_number) {
-  return {Error::Kind::Storage,
+  return {kindOf(error_number),
           fmt::format("cannot read \"{}\": {}; try again, and where it stays so copy the file anew",
                       path.string(), std::strerror(error_number))};
 }
 
+std::vector<std::filesystem::directory_entry> entriesOf(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::directory_entry> found;
+  std::error_code failed;
+  // One that failed is at its end.
+  for (std::filesystem::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed))
+    found.push_back(*i);
+  if (failed && !lastsUntilChanged(failed.value())) {
+    errno = failed.value();
+    storageError("list", folder);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::filesystem::directory_entry> entriesBelow(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::directory_entry> found;
+  for (const std::filesystem::directory_entry& entry : entriesOf(folder)) {
+    found.push_back(entry);
+    std::error_code gone;
+    if (entry.symlink_status(gone).type() != std::filesystem::file_type::directory) continue;
+    const std::vector<std::filesystem::directory_entry> below = entriesBelow(entry.path());
+    found.insert(found.end(), below.begin(), below.end());
+  }
+  return found;
+}
+
 Error storageError(const std::filesystem::filesystem_error& refused) {
+  if (refused.code() == std::errc::not_enough_memory) {
+    return {Error::Kind::OutOfMemory,
+            fmt::format("{}; close other programs, or ask for less at once", refused.what())};
+  }
   return {Error::Kind::Storage,
           fmt::format("{}; expected a place that can be read and written, with room left", refused.what())};
 }

@@ -40,7 +40,14 @@ void writeFileAtomically(const std::filesystem::path& path, const std::function<
 // Syncs a file or folder that was written otherwise; Error{Storage} on failure.
 void syncPath(const std::filesystem::path& path);
 
-// What std::filesystem refused between our own checks, for the borders where it arrives: Error{Storage}.
+// What a folder holds, in order of name; nothing of one that is not there or may not be read. Throws
+// Error{Storage} where the disk does not tell: half a list would be taken for the whole.
+std::vector<std::filesystem::directory_entry> entriesOf(const std::filesystem::path& folder);
+// Likewise, each folder followed by all that lies in it; links are not followed.
+std::vector<std::filesystem::directory_entry> entriesBelow(const std::filesystem::path& folder);
+
+// What std::filesystem refused between our own checks, for the borders where it arrives: Error{Storage}, or
+// Error{OutOfMemory} where it had no room.
 Error storageError(const std::filesystem::filesystem_error& refused);
 
 }  // namespace beam

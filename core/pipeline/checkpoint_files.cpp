@@ -115,7 +115,7 @@ void CheckpointFiles::keep(const CheckpointWriter& what, const Progress& progres
 
 // Of a process that was killed meanwhile.
 void CheckpointFiles::removeHalfWritten() const {
-  for (const auto& entry : fs::directory_iterator(folder_))
+  for (const fs::directory_entry& entry : entriesOf(folder_))
     if (entry.path().filename().string().front() == '.') fs::remove(entry.path());
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/file_reference.h"
 #include "core/io/file.h"
 #include "core/pipeline/output_target.h"
 
@@ -21,13 +22,8 @@ fs::path plain(const fs::path& path) {
   return whole.has_filename() ? whole : whole.parent_path();
 }
 
-bool lies(const fs::path& inner, const fs::path& outer) {
-  const auto [o, i] = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
-  return o == outer.end();
-}
-
 void checkTarget(const fs::path& from, const fs::path& to) {
-  if (lies(to, from) || lies(from, to)) {
+  if (isAtOrBelow(to, from) || isAtOrBelow(from, to)) {
     throw Error(Error::Kind::Usage,
                 fmt::format("\"{}\" cannot be copied into itself or around itself: choose a folder beside "
                             "it, not \"{}\"",
@@ -73,11 +69,9 @@ class Copier {
   }
 
   void failures() {
-    std::error_code none;
-    const fs::path folder = from_.folder() / "failures";
-    for (fs::directory_iterator i(folder, none), end; !none && i != end; i.increment(none)) {
+    for (const fs::directory_entry& entry : entriesOf(from_.folder() / "failures")) {
       fs::create_directory(into_ / "failures");
-      file(i->path(), into_ / "failures" / i->path().filename());
+      file(entry.path(), into_ / "failures" / entry.path().filename());
     }
   }
 
@@ -134,7 +128,7 @@ void moveReferences(ProjectDocument& document, const fs::path& from, const fs::p
 void copyChecked(const Project& from, const fs::path& source, const fs::path& to, bool with_results,
                  Progress& progress) {
   checkTarget(source, to);
-  if (from.captureIsThere() && lies(to, plain(from.captureFolder()))) {
+  if (from.captureIsThere() && isAtOrBelow(to, plain(from.captureFolder()))) {
     throw Error(
         Error::Kind::Usage,
         fmt::format("\"{}\" lies in the capture, into which nothing is written; choose a folder beside it",

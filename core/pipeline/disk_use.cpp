@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/io/file.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -207,11 +208,10 @@ DiskUse diskUse(const Project& project, Progress& progress) {
 
 std::uint64_t bytesBelow(const fs::path& folder) {
   std::uint64_t bytes = 0;
-  std::error_code failed;
-  for (fs::recursive_directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
+  for (const fs::directory_entry& entry : entriesBelow(folder)) {
     std::error_code gone;
-    const bool is_file = i->symlink_status(gone).type() == fs::file_type::regular;
-    const std::uint64_t size = is_file ? i->file_size(gone) : 0;
+    const bool is_file = entry.symlink_status(gone).type() == fs::file_type::regular;
+    const std::uint64_t size = is_file ? entry.file_size(gone) : 0;
     if (!gone) bytes += size;
   }
   return bytes;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/file_reference.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -50,10 +51,6 @@ std::optional<Mount> mountOf(const std::string& line) {
   return mount;
 }
 
-bool lies(const fs::path& inner, const fs::path& outer) {
-  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
-}
-
 // The innermost; of several at one point the last, which lies on top.
 std::optional<Mount> mountAt(const fs::path& folder, const fs::path& table) {
   std::error_code failed;
@@ -62,7 +59,7 @@ std::optional<Mount> mountAt(const fs::path& folder, const fs::path& table) {
   std::optional<Mount> found;
   for (std::string line; std::getline(lines, line);) {
     const std::optional<Mount> mount = mountOf(line);
-    if (!mount || !lies(whole, mount->point)) continue;
+    if (!mount || !isAtOrBelow(whole, mount->point)) continue;
     if (!found || mount->point.native().size() >= found->point.native().size()) found = mount;
   }
   return found;

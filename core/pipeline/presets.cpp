@@ -15,8 +15,7 @@ namespace beam {
 
 std::vector<std::string> presetNamesIn(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  std::error_code failed;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+  for (const std::filesystem::directory_entry& entry : entriesOf(folder)) {
     if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
   }
   const std::vector<std::string> first = {"draft", "standard", "paper"};

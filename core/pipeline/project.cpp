@@ -27,13 +27,14 @@ constexpr const char* kDocumentFile = "project.json";
 
 // Whether a project can be made there. What a killed attempt to make one left behind does not count.
 bool isFree(const fs::path& folder) {
+  if (!isThere(folder)) return true;
   std::error_code failed;
-  if (!fs::exists(folder, failed)) return true;
-  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+  if (!fs::is_directory(folder, failed)) return false;
+  for (const fs::directory_entry& entry : entriesOf(folder)) {
     const std::string name = entry.path().filename().string();
     if (name != "LOCK" && name != "history" && !name.starts_with(".project.json.")) return false;
   }
-  return !failed;
+  return true;
 }
 
 }  // namespace
@@ -149,14 +150,7 @@ void Project::setSaved(Stage& stage, std::string_view stage_id,
 }
 
 std::vector<Field> Project::fields() const {
-  std::vector<Field> all;
-  for (const StageInfo& info : setup_->stages.infos()) {
-    for (Field& field : fieldsOf(*makeStage(info.id))) {
-      field.info.name = info.id + "." + field.info.name;
-      all.push_back(std::move(field));
-    }
-  }
-  return all;
+  return setup_->stages.allFields([this](std::string_view stage) { return makeStage(stage); });
 }
 
 FieldValue Project::value(std::string_view key) const {

@@ -127,10 +127,9 @@ void readWorld(Json j, ProjectDocument& document) {
 
 fs::path nextHistoryFile(const fs::path& history) {
   std::vector<fs::path> kept;
-  for (const auto& entry : fs::directory_iterator(history)) {
+  for (const fs::directory_entry& entry : entriesOf(history)) {
     if (isHistoryFile(entry.path())) kept.push_back(entry.path());
   }
-  std::sort(kept.begin(), kept.end());
   const int last = kept.empty() ? 0 : std::atoi(kept.back().stem().c_str());
   for (std::size_t i = 0; i + kKept <= kept.size(); ++i) fs::remove(kept[i]);
   return history / fmt::format("{:08}.json", last + 1);
@@ -163,7 +162,7 @@ void keepInHistory(const fs::path& project, const std::string& text) {
     fs::create_directories(project / "history");
     writeFileAtomically(nextHistoryFile(project / "history"), text);
   } catch (const fs::filesystem_error& e) {
-    throw Error(Error::Kind::Storage, e.what());
+    throw storageError(e);
   }
 }
 

@@ -43,10 +43,8 @@ HistoryEntry entryOf(const fs::path& file) {
 
 std::vector<fs::path> historyFiles(const fs::path& project) {
   std::vector<fs::path> files;
-  std::error_code failed;
-  for (fs::directory_iterator i(project / "history", failed), end; !failed && i != end; i.increment(failed)) {
-    if (isHistoryFile(i->path())) files.push_back(i->path());
-  }
+  for (const fs::directory_entry& entry : entriesOf(project / "history"))
+    if (isHistoryFile(entry.path())) files.push_back(entry.path());
   std::sort(files.rbegin(), files.rend());  // numbers have eight digits
   return files;
 }
@@ -88,8 +86,8 @@ void restoreProject(const fs::path& project, const HistoryEntry& entry) {
 bool looksLikeProject(const fs::path& folder) {
   std::error_code failed;
   if (fs::is_regular_file(folder / "project.json", failed) || !historyFiles(folder).empty()) return true;
-  for (fs::directory_iterator i(folder / "results", failed), end; !failed && i != end; i.increment(failed)) {
-    const std::string name = i->path().filename().string();
+  for (const fs::directory_entry& entry : entriesOf(folder / "results")) {
+    const std::string name = entry.path().filename().string();
     if (name.size() == kKeyDigits && name.find_first_not_of("0123456789abcdef") == std::string::npos)
       return true;
   }

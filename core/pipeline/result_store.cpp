@@ -28,7 +28,7 @@ auto onDisk(Body&& body) {
   try {
     return body();
   } catch (const fs::filesystem_error& e) {
-    throw Error(Error::Kind::Storage, e.what());
+    throw storageError(e);
   }
 }
 
@@ -43,7 +43,7 @@ void makeFolder(const fs::path& folder) {
 
 std::vector<std::string> filesBelow(const fs::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+  for (const fs::directory_entry& entry : entriesBelow(folder)) {
     if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(folder).generic_string());
   }
   return names;
@@ -72,17 +72,13 @@ std::optional<std::uint64_t> sizeOf(const fs::path& file) {
 // Ascending. Entries with other names are passed over.
 std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension, Kind kind) {
   std::vector<Digest> found;
-  if (!isThere(folder)) return found;
-  std::error_code failed;
-  for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
+  for (const fs::directory_entry& entry : entriesOf(folder)) {
     // A folder where files are expected, or a file where folders are, is not ours.
     std::error_code gone;
-    if (i->path().extension() != extension || i->is_directory(gone) != (kind == Kind::Folders)) continue;
-    if (const std::optional<Digest> key = keyNamed(i->path().stem().string())) found.push_back(*key);
+    if (entry.path().extension() != extension || entry.is_directory(gone) != (kind == Kind::Folders))
+      continue;
+    if (const std::optional<Digest> key = keyNamed(entry.path().stem().string())) found.push_back(*key);
   }
-  if (failed)
-    throw Error(Error::Kind::Storage,
-                fmt::format("cannot list \"{}\": {}", folder.string(), failed.message()));
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -91,11 +87,10 @@ std::vector<Digest> keysIn(const fs::path& folder, const std::string& extension,
 std::vector<std::pair<Digest, fs::path>> namedByKey(const fs::path& folder, std::size_t at) {
   constexpr std::size_t kHexDigits = 32;
   std::vector<std::pair<Digest, fs::path>> found;
-  std::error_code failed;
-  for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
-    const std::string name = i->path().filename().string();
+  for (const fs::directory_entry& entry : entriesOf(folder)) {
+    const std::string name = entry.path().filename().string();
     if (name.size() <= at + kHexDigits || name[at + kHexDigits] != '.') continue;
-    if (const auto key = keyNamed(name.substr(at, kHexDigits))) found.emplace_back(*key, i->path());
+    if (const auto key = keyNamed(name.substr(at, kHexDigits))) found.emplace_back(*key, entry.path());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -119,7 +114,7 @@ void sealFiles(const fs::path& folder, ResultRecord& record) {
     syncPath(file);
     record.files[name] = {fs::file_size(file), digestOfFile(file)};
   }
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+  for (const fs::directory_entry& entry : entriesBelow(folder)) {
     if (entry.is_directory()) syncPath(entry.path());
   }
   writeFileAtomically(folder / kRecordFile, toJson(record));

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/io/file.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -31,9 +33,12 @@ const char* nameOf(LogLevel level) {
 
 void dropOldest(const fs::path& folder) {
   std::vector<fs::path> files;
+  try {
+    for (const fs::directory_entry& entry : entriesOf(folder)) files.push_back(entry.path());
+  } catch (const Error&) {  // no run fails for its log
+    return;
+  }
   std::error_code failed;
-  for (const auto& entry : fs::directory_iterator(folder, failed)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
   for (std::size_t i = 0; i + kKept <= files.size(); ++i) fs::remove(files[i], failed);
 }
 

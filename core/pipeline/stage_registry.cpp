@@ -69,11 +69,30 @@ std::unique_ptr<Stage> StageRegistry::make(std::string_view stage) const { retur
 
 const StageInfo& StageRegistry::info(std::string_view stage) const { return infos_[indexOf(stage)]; }
 
-const StepInfo& StageRegistry::step(const StepId& step) const {
-  for (const StepInfo& s : info(step.stage()).steps) {
-    if (s.id == step.name()) return s;
+const StepInfo* StageRegistry::find(const StepId& step) const {
+  for (const StageInfo& stage : infos_) {
+    for (const StepInfo& s : stage.steps)
+      if (StepId(stage.id, s.id) == step) return &s;
   }
+  return nullptr;
+}
+
+const StepInfo& StageRegistry::step(const StepId& step) const {
+  if (const StepInfo* found = find(step)) return *found;
+  info(step.stage());  // refuses an unknown stage
   throw Error(Error::Kind::Usage, fmt::format("stage {} has no step \"{}\"", step.stage(), step.name()));
+}
+
+std::vector<Field> StageRegistry::allFields(
+    const std::function<std::unique_ptr<Stage>(std::string_view)>& make) const {
+  std::vector<Field> all;
+  for (const StageInfo& info : infos_) {
+    for (Field& field : fieldsOf(*make(info.id))) {
+      field.info.name = info.id + "." + field.info.name;
+      all.push_back(std::move(field));
+    }
+  }
+  return all;
 }
 
 void StageRegistry::addWithReads(const StepId& step, std::set<StepId>& all) const {
@@ -90,12 +109,7 @@ std::set<StepId> StageRegistry::readBefore(const std::set<StepId>& steps) const 
 }
 
 StepShown shownOf(const StageRegistry& stages, const StepId& step) {
-  for (const StageInfo& stage : stages.infos()) {
-    for (const StepInfo& info : stage.steps) {
-      if (StepId(stage.id, info.id) == step) return info.shown;
-    }
-  }
-  return {};
+  return stages.has(step) ? stages.step(step).shown : StepShown{};
 }
 
 }  // namespace beam

@@ -27,6 +27,10 @@ class StageRegistry {
   const StageInfo& info(std::string_view stage) const;
   // Throws Error{Usage} likewise.
   const StepInfo& step(const StepId& step) const;
+  // A pipeline need not have every step of the house.
+  bool has(const StepId& step) const { return find(step) != nullptr; }
+  // Every setting as `make` makes the stages, by its whole name: "surface.iterations".
+  std::vector<Field> allFields(const std::function<std::unique_ptr<Stage>(std::string_view)>& make) const;
   // Into `all`: the step and everything that enters it, in this frame and those before.
   void addWithReads(const StepId& step, std::set<StepId>& all) const;
   // Steps of earlier frames that `steps` of a later one read, with everything that enters these.
@@ -34,6 +38,7 @@ class StageRegistry {
 
  private:
   std::size_t indexOf(std::string_view stage) const;
+  const StepInfo* find(const StepId& step) const;
 
   std::vector<StageInfo> infos_;
   std::vector<Maker> makers_;

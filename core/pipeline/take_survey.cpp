@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/io/file.h"
 
 namespace beam {
 namespace fs = std::filesystem;
@@ -19,9 +20,8 @@ constexpr std::size_t kHexDigits = 32;
 // Keys that name the entries of a folder, with or without an extension; anything else there is passed over.
 std::set<Digest> keysIn(const fs::path& folder) {
   std::set<Digest> keys;
-  std::error_code failed;
-  for (fs::directory_iterator i(folder, failed), end; !failed && i != end; i.increment(failed)) {
-    const std::string stem = i->path().stem().string();
+  for (const fs::directory_entry& entry : entriesOf(folder)) {
+    const std::string stem = entry.path().stem().string();
     if (stem.size() != kHexDigits) continue;
     try {
       keys.insert(parseDigest(stem));

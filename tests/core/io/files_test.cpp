@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <new>
 
 #include "core/base/error.h"
@@ -24,6 +25,7 @@
 namespace beam {
 namespace {
 
+namespace fs = std::filesystem;
 using ::testing::AllOf;
 using testing::dataErrorOf;
 using ::testing::HasSubstr;
@@ -312,30 +314,87 @@ TEST(Files, AreWrittenWhereAKilledProcessOfTheSameNumberLeftItsTemporaryOnes) {
 }
 
 // In a child of its own, which may take little more memory than it has.
-TEST(PngFile, ThatThereIsNoMemoryForIsNotCalledDamaged) {
-  const TempDir dir;
-  writePng(dir / "large.png", Image<u8vec3>(6000, 6000, u8vec3(7), Encoding::Srgb));
-  const auto decodeInLittle = [&] {
+enum class End { Done, NoMemory, Refused };
+
+// In a process of its own that can take `room` bytes more.
+template <class Work>
+End inLittle(rlim_t room, Work&& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
     std::ifstream statm("/proc/self/statm");
     rlim_t pages = 0;
     statm >> pages;
-    const rlim_t now = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (20u << 20);
+    const rlim_t now = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + room;
     const struct rlimit little { now, now };
     ::setrlimit(RLIMIT_AS, &little);
     try {
-      readPhoto(dir / "large.png");
+      work();
     } catch (const std::bad_alloc&) {
-      ::_exit(7);
+      ::_exit(static_cast<int>(End::NoMemory));
     } catch (const Error&) {
-      ::_exit(8);
+      ::_exit(static_cast<int>(End::Refused));
     }
-    ::_exit(9);
-  };
-  const pid_t child = ::fork();
-  if (child == 0) decodeInLittle();
+    ::_exit(static_cast<int>(End::Done));
+  }
   int status = 0;
   ::waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 7);
+  EXPECT_TRUE(WIFEXITED(status));
+  return static_cast<End>(WEXITSTATUS(status));
+}
+
+constexpr rlim_t kMega = 1u << 20;
+
+TEST(PngFile, ThatThereIsNoMemoryForIsNotCalledDamaged) {
+  const TempDir dir;
+  writePng(dir / "large.png", Image<u8vec3>(6000, 6000, u8vec3(7), Encoding::Srgb));
+  EXPECT_EQ(inLittle(20 * kMega, [&] { readPhoto(dir / "large.png"); }), End::NoMemory);
+}
+
+// The library swallows what fails in its destructors, and words the rest in its own ways.
+TEST(ExrFile, IsWholeOrNotThereWhereMemoryIsShort) {
+  const TempDir dir;
+  Planes noise(300, 300, 3);
+  for (std::size_t i = 0; i < noise.values.size(); ++i)
+    noise.values[i] = static_cast<float>((i * 2654435761u) % 1000003u) * 1e-3f;
+  writeExr(dir / "whole.exr", noise, {"R", "G", "B"}, ExrPrecision::Float);
+  const std::vector<std::byte> whole = readFile(dir / "whole.exr", 1u << 30);
+  std::map<End, int> ends;
+  for (rlim_t room = 0; room < 16 * kMega; room += kMega / 2) {
+    const fs::path file = dir / "written.exr";
+    const End written = inLittle(room, [&] { writeExr(file, noise, {"R", "G", "B"}, ExrPrecision::Float); });
+    const End read = inLittle(room, [&] { readExr(dir / "whole.exr", {"R", "G", "B"}); });
+    ++ends[written];
+    EXPECT_NE(written, End::Refused) << room;
+    EXPECT_NE(read, End::Refused) << room;
+    ASSERT_EQ(fs::exists(file), written == End::Done) << room;
+    if (written == End::Done) {
+      EXPECT_TRUE(readFile(file, 1u << 30) == whole) << room;
+    }
+    fs::remove(file);
+  }
+  EXPECT_GT(ends[End::Done], 0);
+  EXPECT_GT(ends[End::NoMemory], 0);
+}
+
+TEST(Folders, AreListedInOrderOrNotAtAll) {
+  const TempDir dir;
+  EXPECT_TRUE(entriesOf(dir / "none").empty());
+  for (const char* file : {"b/d/e", "b/c", "a"}) {
+    fs::create_directories((dir / file).parent_path());
+    std::ofstream(dir / file) << "x";
+  }
+  fs::create_directory_symlink(dir / "b", dir / "link");
+  const auto names = [&](const std::vector<fs::directory_entry>& entries) {
+    std::vector<std::string> found;
+    for (const auto& e : entries) found.push_back(e.path().lexically_relative(dir.path()).generic_string());
+    return found;
+  };
+  EXPECT_EQ(names(entriesOf(dir.path())), (std::vector<std::string>{"a", "b", "link"}));
+  EXPECT_EQ(names(entriesBelow(dir.path())),
+            (std::vector<std::string>{"a", "b", "b/c", "b/d", "b/d/e", "link"}));
+  const testing::FewDescriptors none;
+  EXPECT_THAT(testing::messageOf(Error::Kind::Storage, [&] { entriesOf(dir.path()); }),
+              HasSubstr("cannot list"));
 }
 
 }  // namespace
