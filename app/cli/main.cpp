@@ -128,18 +128,36 @@ int guarded(int argc, char** argv, Console& console, std::stop_token stop) {
   }
 }
 
+// Not even the words for an error had room.
+int endWithoutRoom() noexcept {
+  constexpr std::string_view kWords = "error: out of memory; close other programs\n";
+  if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0) return exitCode(Error::Kind::Storage);
+  return exitCode(Error::Kind::OutOfMemory);
+}
+
+// Destructors of libraries take memory (nlohmann-json's does, to free what it holds without recursion), and
+// where there is none the language ends the program. What was published is whole.
+std::terminate_handler g_abort = nullptr;
+void endAsWithoutRoom() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    ::_exit(endWithoutRoom());
+  } catch (...) {
+  }
+  g_abort();
+}
+
 }  // namespace
 }  // namespace beam
 
 int main(int argc, char** argv) try {
+  beam::g_abort = std::set_terminate(beam::endAsWithoutRoom);
   beam::Interrupt interrupt;
   beam::Console console;
   const int code = beam::guarded(argc, argv, console, interrupt.token());
   // As the GNU tools have it: done is only what could be told, warnings among it.
   return code == beam::kDone && !console.saidAll() ? beam::exitCode(beam::Error::Kind::Storage) : code;
-} catch (const std::exception&) {  // not even the words for an error had room
-  constexpr std::string_view kWords = "error: out of memory; close other programs\n";
-  if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0)
-    return beam::exitCode(beam::Error::Kind::Storage);
-  return beam::exitCode(beam::Error::Kind::OutOfMemory);
+} catch (const std::exception&) {
+  return beam::endWithoutRoom();
 }

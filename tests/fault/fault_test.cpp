@@ -167,7 +167,7 @@ TEST_F(Faults, CostNothingThatWasFinishedAndAreSaid) {
   const auto until = std::chrono::steady_clock::now() +
                      std::chrono::duration<double>(60 * (minutes ? std::atof(minutes) : 0.0));
   const RandomStream random(seed ? std::strtoull(seed, nullptr, 10) : 17);
-  constexpr int kShort = 40;
+  constexpr int kShort = 24;
   const std::vector<Deed> all = deeds();
   std::map<std::string, int> injected, ended;
   int trials = 0, findings = 0;
