@@ -30,19 +30,32 @@ Choices choicesOf(const Services& services) {
           {"device", {"cpu"}}};
 }
 
-void addTo(CLI::App& command, const Choices& choices) {
+// Keys of settings, as they are typed behind these flags.
+Choices keysOf(const Services& services) {
+  std::vector<std::string> keys, assignments;
+  const StageRegistry& stages = services.pipeline->stages;
+  for (const Field& field : stages.allFields([&](std::string_view id) { return stages.make(id); })) {
+    keys.push_back(field.info.name);
+    assignments.push_back(field.info.name + "=");
+  }
+  return {{"set", assignments}, {"unset", keys}};
+}
+
+void addTo(CLI::App& command, const Choices& choices, const Choices& keys) {
   for (CLI::Option* option : command.get_options({})) {
     for (const std::string& name : option->get_lnames()) {
-      const auto found = choices.find(name);
-      if (found == choices.end()) continue;
-      option->check(name == kListFlag ? listOf(found->second) : oneOf(found->second));
+      if (const auto found = choices.find(name); found != choices.end())
+        option->check(name == kListFlag ? listOf(found->second) : oneOf(found->second));
+      if (const auto found = keys.find(name); found != keys.end()) option->check(offeringOf(found->second));
     }
   }
-  for (CLI::App* below : command.get_subcommands({})) addTo(*below, choices);
+  for (CLI::App* below : command.get_subcommands({})) addTo(*below, choices, keys);
 }
 
 }  // namespace
 
-void addChoices(CLI::App& app, const Services& services) { addTo(app, choicesOf(services)); }
+void addChoices(CLI::App& app, const Services& services) {
+  addTo(app, choicesOf(services), keysOf(services));
+}
 
 }  // namespace beam

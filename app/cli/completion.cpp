@@ -13,10 +13,11 @@ namespace beam {
 namespace {
 
 // What a value is completed with.
-enum class Takes { Nothing, Words, Files, Folders };
+enum class Takes { Nothing, Words, Beginnings, Files, Folders };
 
 Takes takesOf(const FlagFacts& f) {
   if (!f.choices.empty()) return Takes::Words;
+  if (!f.offered.empty()) return Takes::Beginnings;
   for (const char* folder : {"FOLDER", "PROJECT", "CAPTURE"}) {
     if (f.type == folder || (f.argument && f.name() == folder)) return Takes::Folders;
   }
@@ -27,8 +28,9 @@ Takes takesOf(const FlagFacts& f) {
 // Of a shell: how its script offers things. The rest of both scripts is the same.
 struct Shell {
   const char* head;
-  const char* words;      // offers words, one of which may follow a comma: {0} the words
-  const char* separated;  // likewise, behind commas
+  const char* words;       // offers words, one of which may follow a comma: {0} the words
+  const char* separated;   // likewise, behind commas
+  const char* beginnings;  // likewise, with more to be typed behind one
   const char* files;
   const char* folders;
   const char* foot;
@@ -53,6 +55,7 @@ _beam() {{
 )",
     R"(COMPREPLY=($(compgen -W "{}" -- "$cur")))",
     R"(word=${{cur%"${{cur##*,}}"}}; COMPREPLY=($(compgen -P "$word" -W "{}" -- "${{cur##*,}}")))",
+    R"(compopt -o nospace 2>/dev/null; COMPREPLY=($(compgen -W "{}" -- "$cur")))",
     R"(compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -- "$cur")))",
     R"(compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -d -- "$cur")))",
     "complete -F _beam beam\n"};
@@ -75,6 +78,7 @@ _beam() {{
 )",
     R"(compadd -- {})",
     R"(compset -P '*,'; compadd -S '' -- {})",
+    R"(compadd -S '' -- {})",
     "_files",
     "_files -/",
     R"(if [ "$funcstack[1]" = "_beam" ]; then
@@ -96,6 +100,8 @@ std::string offer(const Shell& shell, const FlagFacts& f) {
     case Takes::Words:
       return fmt::format(fmt::runtime(f.separated ? shell.separated : shell.words),
                          fmt::join(f.choices, " "));
+    case Takes::Beginnings:
+      return fmt::format(fmt::runtime(shell.beginnings), fmt::join(f.offered, " "));
     case Takes::Files:
       return shell.files;
     case Takes::Folders:

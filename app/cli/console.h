@@ -32,6 +32,7 @@ class Console {
   // --quiet: no progress and no info lines; warnings and errors stay. --verbose: details as well.
   void setQuiet(bool quiet);
   void setVerbose(bool verbose);
+  bool verbose() const { return verbose_; }
 
   // Standard output: what was asked for, also when quiet. Throws Error{Storage} when it does not take it.
   void print(const std::string& text);

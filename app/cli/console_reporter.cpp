@@ -47,7 +47,11 @@ void ConsoleReporter::show(const StepProgress& e) {
 }
 
 void ConsoleReporter::show(const StepFinished& e) {
-  if (!e.reused) return console_.info(fmt::format("{}: done in {:.1f} s", nameOf(e.ref), e.seconds));
+  if (!e.reused) {
+    // Among the details the log says it.
+    if (!console_.verbose()) console_.info(fmt::format("{}: done in {:.1f} s", nameOf(e.ref), e.seconds));
+    return;
+  }
   console_.detail(fmt::format("{}: reused", nameOf(e.ref)));
   const std::string_view stage = e.ref.step.stage();
   const auto known =

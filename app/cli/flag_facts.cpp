@@ -18,9 +18,9 @@ namespace {
 // What stands behind the words of listOf.
 constexpr const char* kList = "...";
 
-// "a,b" of "{a,b}".
+// "a,b" of "{a,b}" and of "<a,b>".
 std::vector<std::string> wordsOf(const std::string& set) {
-  return CLI::detail::split(set.substr(1, set.find('}') - 1), ',');
+  return CLI::detail::split(set.substr(1, set.find_first_of("}>") - 1), ',');
 }
 
 // "1 to 8" of CLI::Range's "INT in [1 - 8]".
@@ -54,6 +54,7 @@ void readType(const std::string& text, FlagFacts& facts) {
       facts.choices = wordsOf(part);
       facts.separated = part.ends_with(kList);
     }
+    if (part.starts_with('<')) facts.offered = wordsOf(part);
     if (const std::string range = rangeOf(part); !range.empty()) facts.range = range;
   }
 }
@@ -158,5 +159,9 @@ CLI::Validator listOf(const std::vector<std::string>& words) {
 }
 
 CLI::Validator someOf(const std::vector<std::string>& words) { return CLI::Validator(setText(words)); }
+
+CLI::Validator offeringOf(const std::vector<std::string>& words) {
+  return CLI::Validator(fmt::format("<{}>", fmt::join(words, ",")));
+}
 
 }  // namespace beam

@@ -20,6 +20,7 @@ struct FlagFacts {
   std::string group;                 // heading; "" hides it
   std::string type;                  // of its value, as shown: "LIST"; empty: it takes none
   std::vector<std::string> choices;  // the words it takes, where these are a closed set
+  std::vector<std::string> offered;  // beginnings of values that only the completion names: "surface.mesh="
   std::string range;                 // "1 to 4096"
   std::string initial;               // the value when nothing is said
   std::vector<std::string> excludes;
@@ -52,5 +53,7 @@ CLI::Validator oneOf(const std::vector<std::string>& words);
 CLI::Validator listOf(const std::vector<std::string>& words);
 // Words that are shown and completed; others are taken as well.
 CLI::Validator someOf(const std::vector<std::string>& words);
+// Words that are completed alone: too many to be shown.
+CLI::Validator offeringOf(const std::vector<std::string>& words);
 
 }  // namespace beam

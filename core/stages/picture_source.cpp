@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/base/word_list.h"
 #include "core/io/file_notes.h"
 #include "core/pipeline/version.h"
 
@@ -35,6 +36,21 @@ std::string textOf(const Camera& c) {
 }
 
 }  // namespace
+
+std::string panoramaText(const PanoramaDigests& panoramas) {
+  std::vector<std::string> each;
+  for (const auto& [name, digest] : panoramas) each.push_back(fmt::format("{} {}", name, digest));
+  return fmt::format("{}", fmt::join(each, ", "));
+}
+
+PanoramaDigests panoramasOf(const std::string& text) {
+  PanoramaDigests panoramas;
+  for (const std::string& each : splitAtCommas(text)) {
+    const std::size_t blank = each.rfind(' ');
+    if (blank != std::string::npos) panoramas[each.substr(0, blank)] = each.substr(blank + 1);
+  }
+  return panoramas;
+}
 
 std::string digestText(const PictureSource& source) {
   if (source.frame_stamp == Digest{}) return {};

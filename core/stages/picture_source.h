@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 
@@ -15,6 +16,13 @@
 namespace beam {
 
 inline constexpr const char* kSourceNote = "source";
+
+// What lights a picture or its layers, as a note: "relight_studio" and the digest of the panorama's file,
+// each, with commas.
+inline constexpr const char* kPanoramaNote = "panorama";
+using PanoramaDigests = std::map<std::string, std::string>;  // by the name of the channel's folder or layer
+std::string panoramaText(const PanoramaDigests& panoramas);
+PanoramaDigests panoramasOf(const std::string& text);
 
 // Values alone: no path, time or name of a project. Equal sources give the same bytes.
 struct PictureSource {

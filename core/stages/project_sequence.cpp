@@ -76,9 +76,6 @@ class ProjectSequence final : public GaussianSequence {
         takes_(project.takes()),
         layers_(project.earlierTakes()) {
     layers_.insert(layers_.end(), takes_.begin(), takes_.end());
-    for (const StageInfo& stage : project.setup().stages.infos()) {
-      for (const StepInfo& step : stage.steps) steps_.insert(StepId(stage.id, step.id));
-    }
   }
 
   std::string id() const override { return project_.folder().string(); }
@@ -189,14 +186,14 @@ class ProjectSequence final : public GaussianSequence {
     return shown ? survey_->leftovers[static_cast<std::size_t>(frame.value)] : kNone;
   }
 
-  // A pipeline need not have every step of the house.
+  bool hasStep(const StepId& step) const { return project_.setup().stages.has(step); }
   std::optional<fs::path> resultIn(const Take& take, const StepId& step, FrameIndex frame) const {
-    if (!steps_.contains(step)) return std::nullopt;
+    if (!hasStep(step)) return std::nullopt;
     std::lock_guard lock(mutex_);
     return project_.result(step, take, frame);
   }
   std::optional<fs::path> result(const StepId& step, FrameIndex frame) const {
-    return steps_.contains(step) ? resultIn(takeOf(frame), step, frame) : std::nullopt;
+    return hasStep(step) ? resultIn(takeOf(frame), step, frame) : std::nullopt;
   }
   Digest key(const StepId& step, FrameIndex frame) const {
     const Take take = takeOf(frame);
@@ -204,15 +201,15 @@ class ProjectSequence final : public GaussianSequence {
     return project_.key(step, take, frame);
   }
   bool isDoneIn(const Take& take, const StepId& step, FrameIndex frame) const {
-    if (!steps_.contains(step)) return false;
+    if (!hasStep(step)) return false;
     std::lock_guard lock(mutex_);
     return project_.state(step, take, frame) == StepState::Done;
   }
   bool isDone(const StepId& step, FrameIndex frame) const {
-    return steps_.contains(step) && isDoneIn(takeOf(frame), step, frame);
+    return hasStep(step) && isDoneIn(takeOf(frame), step, frame);
   }
   bool isFor(const StepId& step, FrameIndex frame) const {
-    return steps_.contains(step) && applies(project_.setup().stages.step(step), takeOf(frame), frame);
+    return hasStep(step) && applies(project_.setup().stages.step(step), takeOf(frame), frame);
   }
   Take ownerOf(FrameIndex frame) const {
     std::lock_guard lock(mutex_);
@@ -309,7 +306,6 @@ class ProjectSequence final : public GaussianSequence {
   const Similarity3 capture_from_world_;
   const std::vector<Take> takes_;
   std::vector<Take> layers_;  // earlier takes, then those of now
-  std::set<StepId> steps_;
   mutable std::mutex mutex_;  // over what project_ remembers of keys
 };
 

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/io/file.h"
+#include "core/io/file_notes.h"
 #include "core/io/image_file.h"
 #include "core/io/mesh_ply.h"
 #include "core/pipeline/file_digest.h"
@@ -216,6 +219,12 @@ class ChannelWriter {
       notes.emplace_back("axes", axes());
     if (any([](const ChannelInfo& c) { return !c.unit.empty(); }))
       notes.emplace_back("unit", lengthUnit(frame_from_world_));
+    PanoramaDigests panoramas;
+    for (const DrawnChannel& d : file.channels) {
+      if (const auto light = lights_.find(d.name); light != lights_.end())
+        panoramas[d.name] = light->second.digest.hex();
+    }
+    if (!panoramas.empty()) notes.emplace_back(kPanoramaNote, panoramaText(panoramas));
     if (!request_.layers) {
       const ChannelInfo& channel = file.channels[0].channel;
       notes.emplace_back("color_state", colorStateOf(channel));
@@ -357,6 +366,29 @@ void requireDrawable(const RenderRequest& request, const RendererAbilities& abil
   for (const View& view : request.views) {
     if (!layers.empty())
       requireLayers(request.out / kLayersFolder / view.name, layers, view.camera.width, view.camera.height);
+  }
+}
+
+void requireOneLight(const RenderRequest& request, std::span<const fs::path> files) {
+  const std::set<fs::path> replaced(files.begin(), files.end());
+  for (const DrawnChannel& d : picturesOf(request)) {
+    if (d.channel.id != kRelightChannel) continue;
+    const auto panorama =
+        std::find_if(request.environments.begin(), request.environments.end(),
+                     [&](const fs::path& environment) { return relitName(environment) == d.name; });
+    const std::string now = digestOfFile(*panorama).hex();
+    const fs::path folder = request.out / (request.layers ? kLayersFolder : d.name);
+    for (const fs::directory_entry& entry : entriesBelow(folder)) {
+      if (replaced.contains(entry.path().lexically_relative(request.out))) continue;
+      const PanoramaDigests lit = panoramasOf(noteIn(notesIn(entry.path()), kPanoramaNote));
+      const auto other = lit.find(d.name);
+      if (other == lit.end()) continue;
+      if (other->second == now) break;  // as are those beside it
+      throw Error(Error::Kind::Usage,
+                  fmt::format("\"{}\" was lit by another panorama than \"{}\", and both would be {}: choose "
+                              "another --out, rename the panorama, or give --force",
+                              entry.path().string(), panorama->string(), d.name));
+    }
   }
 }
 

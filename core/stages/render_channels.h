@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,11 @@ struct RenderedFiles {
 // panorama, two of one name or two layers of one name; Error{Data} for layers
 // that are more than a file is read with. Writes nothing.
 void requireDrawable(const RenderRequest& request, const RendererAbilities& abilities);
+
+// Throws Error{Usage} where a folder that this would write relit pictures into holds others, not among
+// `files`, that another panorama of the same file name lights: one folder would hold two lights. Of what
+// notes say.
+void requireOneLight(const RenderRequest& request, std::span<const std::filesystem::path> files);
 
 // Throws what requireDrawable does, and Error{Data} when a frame is not solved as far as a channel needs. The
 // renderer draws no textures.

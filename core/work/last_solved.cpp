@@ -26,6 +26,7 @@ struct Solved {
   bool enough = false;
   std::optional<FrameIndex> first;  // of the frames that are solved
   bool materials = false;           // of `first`
+  std::vector<FrameIndex> lacking;  // of frames that were named, where not all of them are
 };
 
 std::vector<FrameIndex> framesIn(const Project& project, const std::string& list) {
@@ -41,12 +42,14 @@ Solved solvedOf(const Project& project, const WantedResults& wanted, const Progr
     const FrameContent content = sequence->content(frame);
     const bool enough =
         content.gaussians && (content.materials || !wanted.materials) && (content.mesh || !wanted.mesh);
-    if (!enough && any) continue;
-    if (!enough) return {};
-    solved.enough = true;
+    if (!enough) {
+      if (!any) solved.lacking.push_back(frame);
+      continue;
+    }
     if (!solved.first) solved.first = frame, solved.materials = content.materials;
     if (any) break;
   }
+  solved.enough = solved.first && solved.lacking.empty();
   return solved;
 }
 
@@ -91,6 +94,18 @@ std::vector<std::string> changesOf(const Earlier& earlier, const Project& now) {
   return changes;
 }
 
+// "P.beam": frames 000001-000002 are
+std::string framesAre(const Project& project, const std::vector<FrameIndex>& frames) {
+  std::vector<std::string> names;
+  std::vector<int> positions;
+  for (const FrameIndex frame : frames) {
+    names.push_back(project.capture().frames[static_cast<std::size_t>(frame.value)]);
+    positions.push_back(frame.value);
+  }
+  return fmt::format("\"{}\": {} {} {}", project.folder().string(), nounText(names.size(), "frame"),
+                     shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are"));
+}
+
 LastSolved lastThatServes(const Project& project, const WantedResults& wanted, const Progress& progress) {
   const Solved now = solvedOf(project, wanted, progress);
   if (now.enough && (now.materials || !wanted.materials_if_any)) return {project, {}};
@@ -98,6 +113,14 @@ LastSolved lastThatServes(const Project& project, const WantedResults& wanted, c
   if (!found) return {project, {}};
   const std::vector<std::string> changes = changesOf(*found, project);
   const std::string told = changes.empty() ? "other takes" : shortList(changes);
+  // What is drawn of a frame must not depend on which others are named beside it.
+  if (now.first && !now.lacking.empty()) {
+    throw Error(
+        Error::Kind::Data,
+        fmt::format("{} solved with other settings only ({}), the others that are named with those in "
+                    "force: beam run it, or name them in calls of their own",
+                    framesAre(project, now.lacking), told));
+  }
   if (wanted.strict) {
     throw Error(Error::Kind::Data,
                 fmt::format("\"{}\": what is wanted is not solved with the settings in force, only before "
@@ -132,18 +155,6 @@ void addWhatIsLacking(LastSolved& last, const WantedResults& wanted, const Progr
     if (content.unfinished) last.unfinished.push_back(frame);
   }
   if (isAllFrames(wanted.frames)) last.left_out = solvedOtherwise(last.project, lacking, progress);
-}
-
-// "P.beam": frames 000001-000002 are
-std::string framesAre(const Project& project, const std::vector<FrameIndex>& frames) {
-  std::vector<std::string> names;
-  std::vector<int> positions;
-  for (const FrameIndex frame : frames) {
-    names.push_back(project.capture().frames[static_cast<std::size_t>(frame.value)]);
-    positions.push_back(frame.value);
-  }
-  return fmt::format("\"{}\": {} {} {}", project.folder().string(), nounText(names.size(), "frame"),
-                     shortList(frameRanges(names, positions)), nounText(names.size(), "is", "are"));
 }
 
 void requireStrictly(bool none, const std::string& text) {

@@ -39,8 +39,9 @@ struct LastSolved {
 
 // Gives the project as it is where no settings in its history solved what is wanted, or it is looked at
 // without its capture. Of frames in force without materials it takes those
-// of other settings only on the same surface. Throws Error{Data} where `strict` alone refuses, Error{Usage}
-// for frames that the capture does not have, Cancelled.
+// of other settings only on the same surface. Throws Error{Data} where `strict` alone refuses and where the
+// settings in force solve some of the frames that are named and other ones all, Error{Usage} for frames that
+// the capture does not have, Cancelled.
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress);
 
 }  // namespace beam

@@ -120,15 +120,6 @@ class Collector {
   std::set<std::string> told_;
 };
 
-// A pipeline need not have every step of the house.
-bool screens(const Project& project) {
-  for (const StageInfo& info : project.setup().stages.infos()) {
-    for (const StepInfo& step : info.steps)
-      if (StepId(info.id, step.id) == kScreenStep) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 QualityHistory qualityHistory(const Project& project, const Progress& progress) {
@@ -137,7 +128,7 @@ QualityHistory qualityHistory(const Project& project, const Progress& progress) 
 
 std::vector<LeftOutCamera> leftOutCameras(const Project& project, const Progress& progress) {
   std::vector<ScreenedFrame> frames;
-  if (!screens(project)) return {};
+  if (!project.setup().stages.has(kScreenStep)) return {};
   for (std::size_t f = 0; f < project.capture().frames.size(); ++f) {
     progress.check();
     const auto index = static_cast<std::int32_t>(f);

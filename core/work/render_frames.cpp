@@ -43,12 +43,13 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   pictures.out = request.out;
   pictures.written_by = writerOf(kCommand);
   requireDrawable(pictures, renderer.abilities());
-  requireFolderTarget(request.out, channelFiles(*sequence, pictures),
-                      {kCommand, request.force, inputFolders(project)});
+  const std::vector<std::filesystem::path> files = channelFiles(*sequence, pictures);
+  requireFolderTarget(request.out, files, {kCommand, request.force, inputFolders(project)});
+  if (!request.force) requireOneLight(pictures, files);
   last.tell();
-  const RenderedFiles files = renderChannels(*sequence, pictures, renderer, progress);
+  const RenderedFiles done = renderChannels(*sequence, pictures, renderer, progress);
   return {pictures.views.size(), pictures.frames.size(), interpolatedOf(*sequence, pictures.frames),
-          files.written, files.kept};
+          done.written, done.kept};
 }
 
 }  // namespace beam

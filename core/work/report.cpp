@@ -161,6 +161,8 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
                             fmt::format("these results are not of the settings in force; "
                                         "since they were made: {}",
                                         fmt::join(last.changes, ", ")));
+  if (!last.left_out.empty()) page.history.warnings.push_back(last.leftOutText());
+  if (!last.unfinished.empty()) page.history.warnings.push_back(last.unfinishedText());
   addEvaluation(project, *sequence, request.strict, page);
   {
     Progress part = progress.part(0.5, "compare frames");

@@ -58,6 +58,12 @@ TEST_F(Completion, OffersCommandsFlagsAndWords) {
   EXPECT_THAT(offered({"beam", "run", "P", "--frames", ""}), ElementsAre());
 }
 
+TEST_F(Completion, OffersKeysOfSettings) {
+  EXPECT_THAT(offered({"beam", "run", "P", "--unset", "surface.iter"}), ElementsAre("surface.iterations"));
+  EXPECT_THAT(offered({"beam", "run", "P", "--set", "surface.iter"}), ElementsAre("surface.iterations="));
+  EXPECT_THAT(typed(folder_.path(), "beam help run").out, Not(::testing::HasSubstr("surface.cap")));
+}
+
 TEST_F(Completion, OffersEveryCommandAndFlag) {
   for (const auto& command : helpOfProgram().at("commands")) {
     std::istringstream in(command.at("command").get<std::string>());

@@ -92,7 +92,18 @@ TEST_F(LastSolvedTest, TakesAllFramesFromTheSameSettings) {
   const Project now = Project::open(project.folder(), standInPipeline({.frames = 3}));
   EXPECT_THAT(lastSolved(now, {.frames = "1"}, progress_).changes, IsEmpty());
   EXPECT_THAT(lastSolved(now, {.frames = "all"}, progress_).changes, IsEmpty()) << "some are solved";
-  EXPECT_THAT(lastSolved(now, {.frames = "0-1"}, progress_).changes, ElementsAre(kChange));
+  EXPECT_THAT(lastSolved(now, {.frames = "0,2"}, progress_).changes, ElementsAre(kChange));
+}
+
+// What is drawn of a frame does not depend on which others are named beside it.
+TEST_F(LastSolvedTest, MixesNoFramesInForceWithOnesThatOtherSettingsAloneSolve) {
+  const Project project = changed();
+  run(project, {.frames = {FrameIndex{1}}});
+  const Project now = Project::open(project.folder(), standInPipeline({.frames = 3}));
+  const std::string said =
+      messageOf(Error::Kind::Data, [&] { lastSolved(now, {.frames = "0-2"}, progress_); });
+  EXPECT_THAT(said, AllOf(HasSubstr("frames 000000, 000002 are solved with other settings only"),
+                          HasSubstr(kChange)));
 }
 
 TEST_F(LastSolvedTest, NamesInOneWarningTheFramesThatOtherSettingsAloneHave) {
@@ -125,6 +136,8 @@ TEST_F(LastSolvedTest, NamesFramesThatARunLeftUnrefined) {
   EXPECT_THAT(messageOf(Error::Kind::Data, [&] { lastSolved(cut, {.strict = true}, progress_); }),
               HasSubstr("000001"));
   EXPECT_NO_THROW(lastSolved(cut, {.frames = "0", .strict = true}, progress_));
+  report({cut, folder_ / "cut.html"}, *device_, progress_);
+  EXPECT_THAT(readTextFile(folder_ / "cut.html"), HasSubstr("frame 000001 is fitted and not refined"));
 }
 
 TEST_F(LastSolvedTest, LeavesOutNoFrameThatNobodySolvedOrAScoutPassed) {

@@ -97,6 +97,32 @@ class RenderFiles : public ::testing::Test {
   std::unique_ptr<ComputeDevice> device_ = makeCpuDevice();
 };
 
+// Two panoramas of one file name would share a folder.
+TEST_F(RenderFiles, OfAnotherPanoramaOfTheSameNameDoNotJoinThose) {
+  for (const bool layers : {false, true}) {
+    RenderFramesRequest request = all(folder_ / (layers ? "layered" : "single"));
+    request.channels = {"relight"};
+    request.layers = layers;
+    request.frames = "0";
+    render(request);
+    fs::create_directories(folder_ / "other");
+    writeExr(folder_ / "other/sky.v2.exr", Planes(8, 4, 3, 0.3f), {"R", "G", "B"}, ExrPrecision::Float);
+    const fs::path first = request.environments[0];
+    request.environments = {folder_ / "other/sky.v2.exr"};
+    EXPECT_EQ(render(request).written, 2u) << "all of them anew";
+    request.environments = {first};
+    request.frames = "1";
+    const std::string said = messageOf(Error::Kind::Usage, [&] { render(request); });
+    EXPECT_THAT(said, ::testing::AllOf(HasSubstr("lit by another panorama"), HasSubstr("--force")));
+    request.environments = {folder_ / "other/sky.v2.exr"};
+    EXPECT_EQ(render(request).written, 2u);
+    request.environments = {first};
+    request.frames = "0";
+    request.force = true;
+    EXPECT_EQ(render(request).written, 2u);
+  }
+}
+
 TEST_F(RenderFiles, LayersHoldWhatTheSingleFilesHold) {
   RenderFramesRequest request = all(folder_ / "single");
   render(request);
