@@ -34,6 +34,7 @@ JsonAnswer statusKeys() {
            {"disk.in_force.bytes", "what they take"},
            {"disk.other.results", "results of other settings, which beam clean removes"},
            {"disk.other.bytes", "what they take"},
+           {"disk.checkpoints_bytes", "of work that was cut off, from which a run goes on"},
            {"disk.stages[].id", "stage, as typed"},
            {"disk.stages[].title", "as shown"},
            {"disk.stages[].in_force.results", "as above"},

@@ -189,6 +189,7 @@ DiskAmount DiskUse::others() const { return sumOf(stages, &StageUse::others); }
 
 DiskUse diskUse(const Project& project, Progress& progress) {
   DiskUse use;
+  use.checkpoints = bytesBelow(project.folder() / "checkpoints");
   Progress pictures = progress.part(0.7, "looking at the photographs");
   readPictures(project, use, pictures);
   Progress keys = progress.part(0.1, "looking for results in force");

@@ -44,6 +44,7 @@ struct DiskUse {
   std::vector<ResultUse> results;       // finished and damaged ones, by key
   std::vector<StageUse> stages;         // in pipeline order, then what this program has no stage for
   std::set<Digest> keys_in_force;       // whether there is a result or not; none of blocked stages
+  std::uint64_t checkpoints = 0;        // bytes of work that was cut off, from which it goes on
   std::vector<std::string> unreadable;  // pictures that are there and cannot be read; keys say so
 
   DiskAmount inForce() const;

@@ -194,13 +194,9 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
       drop(step, turn);
       continue;
     }
+    Ended ended = Ended::Computed;
     try {
-      const Ended ended = runStep(step, turn);
-      if (ended == Ended::Busy) return ended;
-      if (ended != Ended::Lost) continue;
-      if (takeUpAgain(plan, *turnBefore(turn))) return ended;
-      splitTakeAt(plan, turn);
-      return runFrame(plan, turn);
+      ended = runStep(step, turn);
     } catch (const Error& e) {
       if (!spoilsOneFrameOnly(e.kind())) throw;
       failFrame(refTo(step, turn), e.what());
@@ -208,6 +204,12 @@ Job::Ended Job::runFrame(const RunPlan& plan, const Turn& turn) {
       drop(step, turn);
       failed = true;
     }
+    if (ended == Ended::Busy) return ended;
+    if (ended != Ended::Lost) continue;
+    // What ails project.json here is no fault of the frame.
+    if (takeUpAgain(plan, *turnBefore(turn))) return ended;
+    splitTakeAt(plan, turn);
+    return runFrame(plan, turn);
   }
   return Ended::Computed;
 }

@@ -95,6 +95,9 @@ const PendingReasons::Reasons& PendingReasons::between(const Digest& was, const 
   if (const auto record = records_.find(was); place.second == was) {
   } else if (record == records_.end()) {
     reasons = {fmt::format("{} changed", step.text())};
+  } else if (const std::string& name = project_.capture().frames[static_cast<std::size_t>(frame.value)];
+             !record->second.frame.empty() && record->second.frame != name) {
+    reasons = {fmt::format("frame {} is built on, before it was frame {}", name, record->second.frame)};
   } else {
     reasons = differences(record->second, step, take, frame);
   }

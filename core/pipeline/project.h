@@ -191,6 +191,9 @@ class Project {
   std::string lostCaptureText() const;
   bool savesTakes() const;
   void changeSaved(const ChangeTakes& change);
+  std::set<StepId> shownOf(const Take& take, FrameIndex frame) const;  // claimed, or between its members
+  std::set<StepId> shownNow(FrameIndex frame) const;                   // by the takes of now
+  bool isUnseen(const Take& take, FrameIndex frame) const;
   std::set<StepId> shownIn(const Take& take, FrameIndex frame) const;  // StepShown::frame
   std::set<StepId> shownBetween(const Take& take, const Between& between) const;
   Digest keyAt(const StepId& step, const Take& take, FrameIndex frame) const;

@@ -375,7 +375,11 @@ void writeProjectDocument(const fs::path& project, ProjectDocument& document, co
   requireFewLooks(project, document);
   // The copy first, so that none is missing; of a new project last, for a folder with a copy alone is one
   // that has lost its project.json.
-  if (disk && !sameButForLooks(disk->document, document)) keepInHistory(project, text);
+  if (disk && !sameButForLooks(disk->document, document)) {
+    // By what is replaced now its results are found later; somebody may have emptied the folder.
+    if (entriesOf(project / "history").empty()) keepInHistory(project, disk->text);
+    keepInHistory(project, text);
+  }
   writeFileAtomically(project / "project.json", text);
   if (!disk) keepInHistory(project, text);
 }

@@ -63,7 +63,7 @@ void Project::dropOutdoneTakes(const Progress& progress) {
   std::erase_if(outdone, [&](const Take& take) {
     for (FrameIndex f = take.begin(); f <= take.last; ++f.value) {
       progress.check();
-      if (hasMore(take, f)) return true;
+      if (hasMore(take, f) || isUnseen(take, f)) return true;
     }
     return false;
   });
@@ -97,18 +97,37 @@ std::set<StepId> Project::shownBetween(const Take& take, const Between& between)
   return both;
 }
 
+std::set<StepId> Project::shownOf(const Take& take, FrameIndex frame) const {
+  if (const std::optional<Between> between = betweenOf(take, frame)) return shownBetween(take, *between);
+  return take.claims(frame) ? shownIn(take, frame) : std::set<StepId>{};
+}
+
+std::set<StepId> Project::shownNow(FrameIndex frame) const {
+  std::set<StepId> shown = shownIn(takeOf(frame), frame);
+  if (const std::optional<Between> between = betweenOf(takes(), frame))
+    shown.merge(shownBetween(takeOf(between->before), *between));
+  return shown;
+}
+
 bool Project::hasMore(const Take& take, FrameIndex frame) const {
-  const std::optional<Between> between = betweenOf(take, frame);
-  if (!between && !take.claims(frame)) return false;
-  const std::set<StepId> here = between ? shownBetween(take, *between) : shownIn(take, frame);
+  const std::set<StepId> here = shownOf(take, frame);
   if (here.empty()) return false;
+  const std::set<StepId> others = shownNow(frame);
   const Take owner = takeOf(frame);
-  std::set<StepId> others = shownIn(owner, frame);
-  if (const std::optional<Between> now = betweenOf(takes(), frame))
-    others.merge(shownBetween(takeOf(now->before), *now));
   return std::any_of(here.begin(), here.end(), [&](const StepId& id) {
     return !others.contains(id) && beam::applies(setup_->stages.step(id), owner, frame);
   });
+}
+
+// Neither it nor the others have anything there by the settings in force: it may by others, which come back.
+bool Project::isUnseen(const Take& take, FrameIndex frame) const {
+  const bool its_own = betweenOf(take, frame) || take.claims(frame);
+  const auto& stages = setup_->stages.infos();
+  const bool shows_any = std::any_of(stages.begin(), stages.end(), [](const StageInfo& stage) {
+    return std::any_of(stage.steps.begin(), stage.steps.end(),
+                       [](const StepInfo& s) { return s.shown.frame; });
+  });
+  return its_own && shows_any && shownOf(take, frame).empty() && shownNow(frame).empty();
 }
 
 void Project::splitTake(const Take& take, FrameIndex frame) {

@@ -254,11 +254,16 @@ std::string diskText(const DiskUse& use) {
     if (stage.in_force.count + stage.others.count == 0) continue;
     text += fmt::format("\n  {:<18} {}", stage.stage.empty() ? stage.title : stage.stage, diskText(stage));
   }
+  if (use.checkpoints > 0)
+    text += fmt::format("\n  {:<18} {} to go on from where a run was cut off", "checkpoints",
+                        sizeText(use.checkpoints));
   return text.empty() ? text : fmt::format("Disk{}", text);
 }
 
 std::string diskJson(const DiskUse& use) {
-  Json j = {{"in_force", toJsonValue(use.inForce())}, {"other", toJsonValue(use.others())}};
+  Json j = {{"in_force", toJsonValue(use.inForce())},
+            {"other", toJsonValue(use.others())},
+            {"checkpoints_bytes", use.checkpoints}};
   j["stages"] = Json::array();
   for (const StageUse& stage : use.stages) {
     j["stages"].push_back({{"id", stage.stage},

@@ -90,6 +90,21 @@ TEST(PendingReasons, TellThatAFrameHasAnotherPlaceInItsTake) {
   EXPECT_THAT(reasonsOf(project, "surface.refine"_step, kFirst), IsEmpty());
 }
 
+TEST(PendingReasons, NameTheFrameThatIsBuiltOnAndNotItsPictures) {
+  FakeHouse house(fakeStagesWithTakes());
+  Project project = house.newProject();
+  RunRequest scout;
+  scout.every = 2;
+  house.finish(project, scout);
+  project.readTakesAgain();
+  const FrameIndex second{2};
+  ASSERT_EQ(project.takeOf(second).before(second), FrameIndex{0});
+  project.changeTakes([](const std::vector<Take>&) { return std::vector<Take>{{{0}, kLast, 1}}; });
+  project.forgetKeys();
+  EXPECT_THAT(reasonsOf(project, "surface.refine"_step, second),
+              ::testing::Contains("frame 001 is built on, before it was frame 000"));
+}
+
 TEST(PendingReasons, ReachLaterFramesOfATake) {
   FakeHouse house(fakeStagesWithTakes());
   Project project = house.newProject();
@@ -122,6 +137,16 @@ TEST(EarlierVersions, AreTheNewestFirstAndNoneTwice) {
   for (const Project& version : earlierVersions(project))
     found.push_back(std::get<int>(version.value("surface.iterations")));
   EXPECT_THAT(found, ElementsAre(20, 30, 10));
+}
+
+TEST(EarlierVersions, HaveTheOneBeforeThoughTheFolderWasEmptied) {
+  FakeHouse house;
+  Project project = house.newProject();
+  std::filesystem::remove_all(project.folder() / "history");
+  project.set("surface.iterations", 20);
+  project.save();
+  ASSERT_EQ(earlierVersions(project).size(), 1u);
+  EXPECT_EQ(std::get<int>(earlierVersions(project)[0].value("surface.iterations")), 10);
 }
 
 TEST(EarlierVersions, HaveTheKeysThatTheirResultsHave) {

@@ -219,6 +219,22 @@ TEST_F(TakeRun, AFailedFrameEndsItsTakeAndTheNextBeginsAnother) {
   EXPECT_TRUE(house_.open().earlierTakes().empty());
 }
 
+// The take cannot be cut then; no frame is at fault.
+TEST_F(TakeRun, EndsWhereProjectJsonIsBrokenMeanwhile) {
+  house_.newProject();
+  const std::filesystem::path file = house_.root() / "p.beam" / "project.json";
+  house_.hooks.at_step = [&](const StepId& step, StepContext& c) {
+    if (step != "surface.refine"_step || c.frame.value != 2) return;
+    std::ofstream(file) << "{\"garbage";
+    throw Error(Error::Kind::Data, "too dark");
+  };
+  const JobFinished finished = house_.finish(house_.open());
+  EXPECT_EQ(finished.outcome, JobOutcome::Failed);
+  EXPECT_EQ(finished.kind, Error::Kind::Data);
+  EXPECT_THAT(finished.message, HasSubstr("project.json"));
+  EXPECT_EQ(finished.failed.size(), 1u);
+}
+
 TEST_F(TakeRun, ADamagedResultOfTheFrameBeforeIsComputedAgainAndCutsNothing) {
   house_.newProject();
   house_.finish(house_.open());

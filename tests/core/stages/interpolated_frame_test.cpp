@@ -87,6 +87,7 @@ class Scout {
   }
 
   Project project() const { return *project_; }
+  Project reopened() { return house_.open(); }
   // A run over all frames that stops in the joints of `stop_at`; -1: it does not.
   void solveAll(int stop_at) {
     house_.hooks.at_step = [this, stop_at](const StepId& step, StepContext& c) {
@@ -237,6 +238,12 @@ TEST(InterpolatedFrame, OfAScoutIsShownUntilAFullRunIsAsFar) {
   EXPECT_NE(survey.stamps[4], Digest{});
   Progress progress;
   EXPECT_EQ(diskUse(project, progress).others().count, 0) << "a clean leaves what is shown";
+
+  // Settings change, and a run with them ends: they may change back.
+  Project changed = project;
+  changed.set("surface.iterations", 7);
+  changed.dropOutdoneTakes(progress);
+  EXPECT_EQ(scout.reopened().earlierTakes(), project.earlierTakes());
 
   scout.solveAll(-1);
   EXPECT_TRUE(scout.project().earlierTakes().empty());
