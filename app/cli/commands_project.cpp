@@ -129,11 +129,10 @@ void addProcessCommand(CLI::App& app, CommandContext& context) {
       Project project = projectFor(a->project, a->capture, context.services);
       const Project before = project;
       applyFlags(project, a->project_flags);
-      if (made)
-        tellPlacement(project, context.console);
-      else
-        tellChanges(before, project, a->run.dry_run, context.console);
-      return runProject(std::move(project), a->run, "process", context);
+      if (made) tellPlacement(project, context.console);
+      return runProject(std::move(project), a->run, "process", context, [&](const Project& saved) {
+        if (!made) tellChanges(before, saved, a->run.dry_run, context.console);
+      });
     };
   });
 }
@@ -171,8 +170,9 @@ void addRunCommand(CLI::App& app, CommandContext& context) {
       const Project before = project;
       applyFlags(project, a->project_flags);
       if (warnOfCapture(project, context.console)) project.acceptCaptureChange();
-      tellChanges(before, project, a->run.dry_run, context.console);
-      return runProject(std::move(project), a->run, "run", context);
+      return runProject(std::move(project), a->run, "run", context, [&](const Project& saved) {
+        tellChanges(before, saved, a->run.dry_run, context.console);
+      });
     };
   });
 }

@@ -157,15 +157,20 @@ void applyFlags(Project& project, const ProjectFlags& flags) {
   if (flags.unit) project.setUnit(parseUnit(*flags.unit));
 }
 
-int runProject(Project project, const RunFlags& flags, const std::string& command, CommandContext& context) {
+int runProject(Project project, const RunFlags& flags, const std::string& command, CommandContext& context,
+               const std::function<void(const Project&)>& tell_saved) {
   RunRequest request{.stage = flags.stage, .until = flags.until, .every = flags.every};
   if (!isAllFrames(flags.frames)) request.frames = parseFrameList(flags.frames, project.capture().frames);
-  if (flags.dry_run) return tellPlan(project, request, flags, command, context.console);
+  if (flags.dry_run) {
+    if (tell_saved) tell_saved(project);
+    return tellPlan(project, request, flags, command, context.console);
+  }
   if (const std::string remark = request.frames.empty() ? "" : remarkOfRun(project, request); !remark.empty())
     context.console.warning(remark);
   makeRunPlan(project, request);  // words and captures that cannot be leave no trace in the project
   std::shared_ptr<ComputeDevice> device = makeDevice(flags.device);
   project.save();
+  if (tell_saved) tell_saved(project);
   const Project kept = project;
   Runner runner;
   runner.start(std::move(project), std::move(request), std::move(device));

@@ -2,6 +2,7 @@
 // The flags of `beam process`, `beam new` and `beam run`, and what they do to a project.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,7 +48,8 @@ std::vector<std::string> parseHoldOut(const std::string& text);
 void applyFlags(Project& project, const ProjectFlags& flags);
 
 // Saves the project, runs it and reports until the end; the exit code. What cannot be run is not saved. A dry
-// run says what there is to do and saves nothing.
-int runProject(Project project, const RunFlags& flags, const std::string& command, CommandContext& context);
+// run says what there is to do and saves nothing. `tell_saved` once it is saved, or would be.
+int runProject(Project project, const RunFlags& flags, const std::string& command, CommandContext& context,
+               const std::function<void(const Project&)>& tell_saved = {});
 
 }  // namespace beam

@@ -148,12 +148,16 @@ std::vector<FrameIndex> solvedOtherwise(const Project& project,
 void addWhatIsLacking(LastSolved& last, const WantedResults& wanted, const Progress& progress) {
   const auto sequence = sequenceOf(last.project, wanted.between ? Shows::Between : Shows::Solved);
   std::map<std::string, FrameIndex> lacking;
+  bool any_materials = false;
   for (const FrameIndex frame : framesIn(last.project, wanted.frames)) {
     progress.check();
     const FrameContent content = sequence->content(frame);
     if (!content.gaussians) lacking.emplace(nameOf(*sequence, frame), frame);
     if (content.unfinished) last.unfinished.push_back(frame);
+    any_materials |= content.materials;
+    if (wanted.materials_if_any && content.gaussians && !content.materials) last.bare.push_back(frame);
   }
+  if (!any_materials) last.bare.clear();
   if (isAllFrames(wanted.frames)) last.left_out = solvedOtherwise(last.project, lacking, progress);
 }
 
@@ -172,6 +176,11 @@ std::string LastSolved::leftOutText() const {
       framesAre(project, left_out));
 }
 
+std::string LastSolved::bareText() const {
+  return fmt::format("{} without materials, which the others have: beam run it to give all of them their own",
+                     framesAre(project, bare));
+}
+
 std::string LastSolved::unfinishedText() const {
   return fmt::format("{} fitted and not refined yet, for a run was cut: beam run it to finish them",
                      framesAre(project, unfinished));
@@ -186,6 +195,7 @@ void LastSolved::tell() const {
   }
   if (!left_out.empty()) logWarning("{}; --strict refuses", leftOutText());
   if (!unfinished.empty()) logWarning("{}; --strict refuses", unfinishedText());
+  if (!bare.empty()) logWarning("{}; --strict refuses", bareText());
 }
 
 LastSolved lastSolved(const Project& project, const WantedResults& wanted, const Progress& progress) {
@@ -195,6 +205,7 @@ LastSolved lastSolved(const Project& project, const WantedResults& wanted, const
   if (wanted.strict) {
     requireStrictly(last.left_out.empty(), last.leftOutText());
     requireStrictly(last.unfinished.empty(), last.unfinishedText());
+    requireStrictly(last.bare.empty(), last.bareText());
   }
   return last;
 }

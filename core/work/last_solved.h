@@ -30,7 +30,11 @@ struct LastSolved {
   // Of those that are used: fitted and not refined, for the run was cut there.
   std::vector<FrameIndex> unfinished = {};
 
+  // Where materials_if_any was asked for: without materials, though others of those that are used have some.
+  std::vector<FrameIndex> bare = {};
+
   std::string leftOutText() const;     // a sentence of left_out, which has some
+  std::string bareText() const;        // likewise
   std::string unfinishedText() const;  // likewise
   // Logs a warning that names what changed, where something did, and one of what is left out; once nothing
   // else is refused.

@@ -163,6 +163,7 @@ ReportOutcome report(const ReportRequest& request, ComputeDevice& device, Progre
                                         fmt::join(last.changes, ", ")));
   if (!last.left_out.empty()) page.history.warnings.push_back(last.leftOutText());
   if (!last.unfinished.empty()) page.history.warnings.push_back(last.unfinishedText());
+  if (!last.bare.empty()) page.history.warnings.push_back(last.bareText());
   addEvaluation(project, *sequence, request.strict, page);
   {
     Progress part = progress.part(0.5, "compare frames");

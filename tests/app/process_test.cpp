@@ -98,7 +98,7 @@ TEST_F(Process, StopsAfterSurfaceWithoutAPanoramaAndSaysWhatItNeeds) {
            Words{"--environment", (SampleHouse::capture() / "environment.exr").string(), "--verbose"});
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.err, HasSubstr("surface.mesh: reused"));
-  EXPECT_THAT(rest.err, HasSubstr("materials.fit: done"));
+  EXPECT_THAT(rest.err, HasSubstr("materials.fit, frame 000000 done"));
 }
 
 TEST_F(Process, KilledAtAnyMomentItGoesOnAndEndsWithTheSameBytes) {

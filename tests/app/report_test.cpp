@@ -124,7 +124,7 @@ TEST_F(Report, AHeldOutPhotographChangesTheScoreAndNothingElse) {
   const Said said = process(at("capture"), {"--verbose"});
   ASSERT_EQ(said.code, 0) << said.err;
   EXPECT_THAT(said.err, HasSubstr("frame 000000 surface.refine: reused"));
-  EXPECT_THAT(said.err, HasSubstr("frame 000000 surface.score: done"));
+  EXPECT_THAT(said.err, HasSubstr("surface.score, frame 000000 done"));
   EXPECT_THAT(said.err, HasSubstr("frame 000000 surface.mesh: reused"));
   EXPECT_THAT(said.err, HasSubstr("frame 000001 surface.score: reused"));
 }

@@ -108,6 +108,12 @@ TEST_F(Settings, ThatARunSavesAreSaid) {
   EXPECT_THAT(beam(run + Words{"--dry-run"}).err, HasSubstr("would be saved: surface.cap 400 → 500"));
   EXPECT_THAT(beam(run).err, HasSubstr("saved: surface.cap 400 → 500"));
   EXPECT_THAT(beam(run).err, Not(HasSubstr("saved:")));
+  const Words other = {"run", project(), "--until", "capture", "--set", "surface.cap=600"};
+  fs::remove_all(fs::path(project()) / "history");
+  std::ofstream(fs::path(project()) / "history") << "in the way";
+  const Said failed = beam(other);
+  EXPECT_EQ(failed.code, 74) << failed.err;
+  EXPECT_THAT(failed.err, Not(HasSubstr("saved:")));
 }
 
 TEST_F(Settings, TakesOfFramesThatAreNotThereAreSaid) {

@@ -156,6 +156,21 @@ TEST_F(LastSolvedTest, TakesMaterialsOfOtherSettingsOnTheSurfaceInForce) {
             [&] { lastSolved(project, {.materials_if_any = true, .strict = true}, progress_); });
 }
 
+TEST_F(LastSolvedTest, NamesFramesThatAloneHaveNoMaterials) {
+  const Project project = changed("materials.iterations", 7);
+  run(project, {.frames = {FrameIndex{1}}});
+  const Project now = Project::open(project.folder(), standInPipeline({.frames = 3}));
+  const WantedResults wanted{.frames = "1-2", .materials_if_any = true};
+  const LastSolved last = lastSolved(now, wanted, progress_);
+  EXPECT_THAT(last.bare, ElementsAre(FrameIndex{2}));
+  last.tell();
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_THAT(warnings_[0], HasSubstr("frame 000002 is without materials"));
+  WantedResults strict = wanted;
+  strict.strict = true;
+  EXPECT_THAT(messageOf(Error::Kind::Data, [&] { lastSolved(now, strict, progress_); }), HasSubstr("000002"));
+}
+
 TEST_F(LastSolvedTest, NamesNoChangeOfMaterialsThatWereNeverSolved) {
   Project project = changed("materials.iterations", 7);
   project.set("materials.iterations", 100);
