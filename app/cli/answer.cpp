@@ -2,8 +2,10 @@
 #include "app/cli/answer.h"
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/io/written_by.h"
 #include "core/pipeline/output_target.h"
@@ -38,8 +40,14 @@ void answer(const AnswerFlags& flags, const std::string& command, Console& conso
             const std::function<std::string()>& words, const std::function<std::string()>& json) {
   const bool print_json = flags.json || flags.json_file == "-";
   const std::string whole = print_json || toFile(flags) ? signedBy(command, json()) : std::string();
-  if (toFile(flags)) writeFileAtomically(flags.json_file, whole + "\n");
+  std::exception_ptr not_written;  // it is told all the same
+  try {
+    if (toFile(flags)) writeFileAtomically(flags.json_file, whole + "\n");
+  } catch (const Error&) {
+    not_written = std::current_exception();
+  }
   print_json ? console.print(whole) : console.tell(words());
+  if (not_written) std::rethrow_exception(not_written);
 }
 
 }  // namespace beam

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <exception>
 #include <iterator>
 #include <memory>
 #include <span>
@@ -108,10 +109,17 @@ int runEvaluate(const EvaluateFlags& flags, CommandContext& context) {
   Progress progress(context.stop, context.console.listener());
   const EvaluateOutcome outcome = evaluate(request, *device, progress);
   context.console.endProgress();
-  keepEvaluation(request.project, outcome);
+  // Scores took long: they are told, whatever cannot be written.
+  std::exception_ptr not_kept;
+  try {
+    keepEvaluation(request.project, outcome);
+  } catch (const Error&) {
+    not_kept = std::current_exception();
+  }
   answer(
       flags.answer, kCommand, context.console, [&] { return scoreText(outcome.table); },
       [&] { return scoreJson(outcome.table, outcome.each, outcome.origin); });
+  if (not_kept) std::rethrow_exception(not_kept);
   return 0;
 }
 

@@ -32,7 +32,7 @@ JsonAnswer statusKeys() {
            {"stages[].steps[].frames.*.message", "why the frame failed"},
            {"disk.in_force.results", "results of the settings in force"},
            {"disk.in_force.bytes", "what they take"},
-           {"disk.other.results", "results of other settings, which beam clean removes"},
+           {"disk.other.results", "results that are not in force: of other settings, photographs or takes"},
            {"disk.other.bytes", "what they take"},
            {"disk.checkpoints_bytes", "of work that was cut off, from which a run goes on"},
            {"disk.stages[].id", "stage, as typed"},

@@ -69,10 +69,12 @@ JobFinished Job::run(const RunRequest& request) {
     finished_.at_rest = true;
     finished_.notes.push_back(restNote());
   } catch (const Error& e) {
-    fail(e.kind(), e.kind() == Error::Kind::OutOfMemory ? memoryText() : e.what());
+    fail(e.kind(), e.kind() == Error::Kind::OutOfMemory ? memoryText()
+                   : e.kind() == Error::Kind::Storage   ? storageText(e)
+                                                        : e.what());
   } catch (const std::filesystem::filesystem_error& e) {
     const Error storage = storageError(e);
-    fail(storage.kind(), storage.what());
+    fail(storage.kind(), storageText(storage));
   } catch (const std::bad_alloc&) {
     fail(Error::Kind::OutOfMemory, memoryText());
   } catch (const std::exception& e) {
@@ -88,6 +90,11 @@ JobFinished Job::run(const RunRequest& request) {
 std::string Job::placeText() const {
   if (now_.step.empty()) return " in the preparation";
   return fmt::format(" in {}{}", now_.step.text(), now_.frame ? ", frame " + now_.frame_name : std::string());
+}
+
+std::string Job::storageText(const Error& e) const {
+  return fmt::format(
+      "{}; what is finished is kept, and the same command goes on once the disk can be written", e.what());
 }
 
 // Memory may be short for this, too.

@@ -84,6 +84,7 @@ class Job {
   // " in surface.fit, frame 000002": of the step at work.
   std::string placeText() const;
   std::string memoryText() const;
+  std::string storageText(const Error& e) const;
 
   StepRef refTo(const StepId& step, std::optional<Turn> turn) const;
   double secondsSince(Clock::time_point start) const;

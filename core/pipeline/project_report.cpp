@@ -167,7 +167,7 @@ std::string diskText(const StageUse& stage) {
   const std::string others = sizeText(stage.others.bytes);
   if (stage.stage.empty()) return fmt::format("{} (beam clean)", others);
   std::string text = sizeText(stage.in_force.bytes);
-  if (stage.others.count > 0) text += fmt::format(", {} of other settings (beam clean)", others);
+  if (stage.others.count > 0) text += fmt::format(", {} not in force (beam clean)", others);
   if (!stage.blocked_reason.empty()) text += " of any settings, as it is blocked";
   return text;
 }

@@ -14,7 +14,7 @@ const char* toText(StepState state);  // "done"
 std::string statusText(const Project& project);
 std::string statusJson(const Project& project);
 
-// "Disk" and a line a stage: "surface 210 MB, 340 MB of other settings (beam clean)"; empty: no results.
+// "Disk" and a line a stage: "surface 210 MB, 340 MB not in force (beam clean)"; empty: no results.
 std::string diskText(const DiskUse& use);
 std::string diskJson(const DiskUse& use);
 

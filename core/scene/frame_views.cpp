@@ -52,9 +52,10 @@ void judgeFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
       logWarning("{}; camera {} is left out of frame {}", problems[i], capture.views[i].name, name);
   }
   if (readable < kLeastTrainingCameras && split == Split::Train) {
-    throw Error(Error::Kind::Data,
-                fmt::format("expected at least {} readable training pictures of frame {}, found {}",
-                            kLeastTrainingCameras, name, readable));
+    throw Error(Error::Kind::Data, fmt::format("expected at least {} readable training pictures of frame {}, "
+                                               "found {}; beam check names what is wrong "
+                                               "with the others",
+                                               kLeastTrainingCameras, name, readable));
   }
 }
 

@@ -171,8 +171,8 @@ void requireStrictly(bool none, const std::string& text) {
 
 std::string LastSolved::leftOutText() const {
   return fmt::format(
-      "{} left out: solved with other settings, or in another take, than the frames that are used; beam run "
-      "it to solve all of them alike",
+      "{} left out: what there is of them was made with other settings, of other photographs or in another "
+      "take than the frames that are used (beam status says which); beam run solves all of them alike",
       framesAre(project, left_out));
 }
 

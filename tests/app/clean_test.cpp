@@ -157,7 +157,7 @@ TEST_F(Clean, RefusesToRemoveTheOnlyResultsThatThereAre) {
 TEST_F(Clean, LeavesTheResultsOfTheSettingsInForceByteForByteAndNothingElse) {
   const auto before = filesIn(project() / "results");
   ASSERT_GT(bytesOf(productsOf(project())), bytesOf(productsOf(only())));
-  EXPECT_THAT(beam({"status", project().string()}).out, HasSubstr(" of other settings (beam clean)"));
+  EXPECT_THAT(beam({"status", project().string()}).out, HasSubstr(" not in force (beam clean)"));
   const Json disk = status(project())["disk"];
 
   const Said said =

@@ -142,5 +142,15 @@ TEST_F(Report, EvaluateScoresAHeldOutCameraThatDropsTheFirstFrame) {
   EXPECT_THAT(json, HasSubstr("\"cam02\""));
 }
 
+TEST_F(Report, ScoresAreToldThoughTheyCannotBeKept) {
+  ASSERT_EQ(process(SampleHouse::capture()).code, 0);
+  fs::create_directory(at("p.beam") / "evaluation.json");
+  std::ofstream(at("p.beam") / "evaluation.json" / "in the way") << "";
+  const Said said = beam({"evaluate", at("p.beam").string()});
+  EXPECT_EQ(said.code, 74) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("psnr"));
+  EXPECT_THAT(said.err, HasSubstr("evaluation.json"));
+}
+
 }  // namespace
 }  // namespace beam::testing

@@ -393,7 +393,7 @@ TEST_F(Clean, OfANewProjectFindsNothing) {
 TEST_F(Clean, StatusTellsInForceAndOthersApart) {
   solveToAndFro();
   const DiskUse use = plan().use;
-  EXPECT_THAT(diskText(use), AllOf(HasSubstr("\n  surface  "), HasSubstr(" of other settings (beam clean)")));
+  EXPECT_THAT(diskText(use), AllOf(HasSubstr("\n  surface  "), HasSubstr(" not in force (beam clean)")));
   EXPECT_THAT(diskJson(use), AllOf(HasSubstr("\"in_force\""), HasSubstr("\"other\"")));
   clean();
   EXPECT_EQ(diskText(plan().use).find("other settings"), std::string::npos);
