@@ -188,7 +188,8 @@ TEST_F(StudioProgram, ATerminationDuringARunEndsItAndCostsNothingThatWasFinished
                                              "0", "--set", "surface.iterations=20", "--verbose"})
                         .wait();
   EXPECT_EQ(rest.code, 0) << rest.err;
-  EXPECT_THAT(rest.err, AllOf(HasSubstr("capture.import: reused"), HasSubstr("surface.mesh: done")));
+  EXPECT_THAT(rest.err,
+              AllOf(HasSubstr("capture.import: reused"), HasSubstr("surface.mesh, frame 000000 done")));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <new>
@@ -324,8 +325,18 @@ End inLittle(rlim_t room, Work&& work) {
     std::ifstream statm("/proc/self/statm");
     rlim_t pages = 0;
     statm >> pages;
-    const rlim_t now = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + room;
-    const struct rlimit little { now, now };
+    const rlim_t now = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+    struct rlimit little {
+      now, RLIM_INFINITY
+    };
+    ::setrlimit(RLIMIT_AS, &little);
+    // What earlier tests gave back is not to be had.
+    for (const std::size_t bytes : {std::size_t{1} << 16, std::size_t{1} << 12}) {
+      void* volatile taken = nullptr;  // the compiler would take an unused one out
+      do taken = std::malloc(bytes);
+      while (taken);
+    }
+    little.rlim_cur = now + room;
     ::setrlimit(RLIMIT_AS, &little);
     try {
       work();
