@@ -53,8 +53,8 @@ void judgeFrameViews(const CaptureSet& capture, FrameIndex frame, Split split,
   }
   if (readable < kLeastTrainingCameras && split == Split::Train) {
     throw Error(Error::Kind::Data, fmt::format("expected at least {} readable training pictures of frame {}, "
-                                               "found {}; beam check names what is wrong "
-                                               "with the others",
+                                               "found {}; beam check says what is wrong "
+                                               "with them",
                                                kLeastTrainingCameras, name, readable));
   }
 }
