@@ -314,7 +314,6 @@ TEST(Files, AreWrittenWhereAKilledProcessOfTheSameNumberLeftItsTemporaryOnes) {
   EXPECT_EQ(readTextFile(dir / "a.txt"), "new");
 }
 
-// In a child of its own, which may take little more memory than it has.
 enum class End { Done, NoMemory, Refused };
 
 // In a process of its own that can take `room` bytes more.

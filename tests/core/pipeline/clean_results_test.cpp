@@ -396,7 +396,7 @@ TEST_F(Clean, StatusTellsInForceAndOthersApart) {
   EXPECT_THAT(diskText(use), AllOf(HasSubstr("\n  surface  "), HasSubstr(" not in force (beam clean)")));
   EXPECT_THAT(diskJson(use), AllOf(HasSubstr("\"in_force\""), HasSubstr("\"other\"")));
   clean();
-  EXPECT_EQ(diskText(plan().use).find("other settings"), std::string::npos);
+  EXPECT_EQ(diskText(plan().use).find("not in force"), std::string::npos);
 }
 
 TEST(SizeText, IsShortAndHasAUnit) {
