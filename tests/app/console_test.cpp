@@ -145,7 +145,10 @@ TEST_F(Terminal, WhatIsThereAlreadyIsOneLineAStage) {
   EXPECT_EQ(linesWith(first, "surface.mesh, frame 000000 done in"), 1) << first.err;
   EXPECT_EQ(linesWith(first, "surface.mesh: done"), 0) << "said once";
   const Said said = Running(folder_.path(), process("p.beam")).wait();
-  EXPECT_EQ(linesWith(said, "reused"), 5) << said.err;
+  std::istringstream lines(said.err);
+  int reused = 0;
+  for (std::string line; std::getline(lines, line);) reused += line.ends_with("reused");
+  EXPECT_EQ(reused, 4) << said.err;
   EXPECT_THAT(Running(folder_.path(), process("p.beam") + Words{"--verbose"}).wait().err,
               HasSubstr("surface.mesh: reused"));
 }
