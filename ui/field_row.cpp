@@ -31,6 +31,9 @@ QString tipOf(const Field& field, const FieldValue& standard) {
     case Effect::LaterResults:
       lines << "Changes frames that are computed from now on; results that are there stay as they are.";
       break;
+    case Effect::Pictures:
+      lines << "Changes how results are drawn, never results.";
+      break;
     case Effect::SpeedOnly:
       lines << "Changes speed only, never results.";
       break;

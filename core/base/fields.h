@@ -15,6 +15,7 @@ namespace beam {
 enum class Effect {
   Result,        // changes numbers: enters the key
   LaterResults,  // changes numbers of what is computed from then on; results that are there stay: in no key
+  Pictures,      // changes what is drawn of results: in no key
   SpeedOnly,     // changes time or memory only
 };
 

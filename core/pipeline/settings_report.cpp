@@ -177,7 +177,7 @@ std::string stagesText(const PipelineSetup& setup, const Project* project) {
     text = fmt::format("project {}, preset {}, {} set beside it\n", project->name(),
                        project->document().preset, countText(project->document().settings.size(), "setting"));
   }
-  for (const StageInfo& info : setup.stages.infos()) {
+  for (const StageInfo& info : setup.stages.groups()) {
     text += fmt::format("{}: {}. {}\n", info.id, info.title, info.summary);
     for (const StepInfo& step : info.steps) {
       text += fmt::format("  step {}.{}: {}{}\n", info.id, step.id, step.title,
@@ -194,7 +194,7 @@ std::string stagesJson(const PipelineSetup& setup, const Project* project) {
   Json j = Json::object();
   if (project) j = {{"project", project->name()}, {"preset", project->document().preset}};
   j["stages"] = Json::array();
-  for (const StageInfo& info : setup.stages.infos()) {
+  for (const StageInfo& info : setup.stages.groups()) {
     Json stage = {{"id", info.id}, {"title", info.title}, {"summary", info.summary}};
     stage["steps"] = Json::array();
     for (const StepInfo& step : info.steps) stage["steps"].push_back(toJsonValue(info, step));

@@ -37,7 +37,7 @@ void StageRegistry::add(Maker maker) {
   const std::unique_ptr<Stage> stage = maker();
   const StageInfo info = stage->info();
   std::set<StepId> known;
-  for (const StageInfo& earlier : infos_) {
+  for (const StageInfo& earlier : groups_) {
     if (earlier.id == info.id)
       throw Error(Error::Kind::Bug, fmt::format("stage {} is registered twice", info.id));
     for (const StepInfo& step : earlier.steps) known.insert(StepId(earlier.id, step.id));
@@ -53,21 +53,31 @@ void StageRegistry::add(Maker maker) {
     known.insert(StepId(info.id, step.id));
   }
   requireKeys(*stage);
-  infos_.push_back(info);
+  groups_.push_back(info);
+  if (!info.steps.empty()) infos_.push_back(info);
   makers_.push_back(std::move(maker));
 }
 
-std::size_t StageRegistry::indexOf(std::string_view stage) const {
+const StageInfo& StageRegistry::info(std::string_view stage) const {
   std::vector<std::string> known;
-  for (const StageInfo& info : infos_) known.push_back(info.id);
-  const auto found = std::find(known.begin(), known.end(), stage);
-  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+  for (const StageInfo& info : infos_) {
+    if (info.id == stage) return info;
+    known.push_back(info.id);
+  }
+  const auto of_settings = [&](const StageInfo& group) { return group.id == stage; };
+  if (std::any_of(groups_.begin(), groups_.end(), of_settings)) {
+    throw Error(Error::Kind::Usage,
+                fmt::format("stage {} has settings and no steps: there is nothing of it to run", stage));
+  }
   throw Error(Error::Kind::Usage, noSuchName("stage", stage, known, "beam stages lists them"));
 }
 
-std::unique_ptr<Stage> StageRegistry::make(std::string_view stage) const { return makers_[indexOf(stage)](); }
-
-const StageInfo& StageRegistry::info(std::string_view stage) const { return infos_[indexOf(stage)]; }
+std::unique_ptr<Stage> StageRegistry::make(std::string_view stage) const {
+  const auto found =
+      std::find_if(groups_.begin(), groups_.end(), [&](const StageInfo& g) { return g.id == stage; });
+  if (found == groups_.end()) info(stage);  // refuses it
+  return makers_[static_cast<std::size_t>(found - groups_.begin())]();
+}
 
 const StepInfo* StageRegistry::find(const StepId& step) const {
   for (const StageInfo& stage : infos_) {
@@ -86,7 +96,7 @@ const StepInfo& StageRegistry::step(const StepId& step) const {
 std::vector<Field> StageRegistry::allFields(
     const std::function<std::unique_ptr<Stage>(std::string_view)>& make) const {
   std::vector<Field> all;
-  for (const StageInfo& info : infos_) {
+  for (const StageInfo& info : groups_) {
     for (Field& field : fieldsOf(*make(info.id))) {
       field.info.name = info.id + "." + field.info.name;
       all.push_back(std::move(field));

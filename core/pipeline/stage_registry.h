@@ -20,9 +20,11 @@ class StageRegistry {
   // Throws Error{Bug} when the id is taken, a step names an input that does not stand before it, or a setting
   // that changes results enters no key (entersKey): changed, it would be answered with old results.
   void add(Maker maker);
-  // In order of adding.
+  // Those with steps, in order of adding.
   const std::vector<StageInfo>& infos() const { return infos_; }
-  // Throws Error{Usage} that names the nearest stage.
+  // Also those without, which are groups of settings that enter no key.
+  const std::vector<StageInfo>& groups() const { return groups_; }
+  // Both throw Error{Usage} that names the nearest stage; info() also for one without steps.
   std::unique_ptr<Stage> make(std::string_view stage) const;
   const StageInfo& info(std::string_view stage) const;
   // Throws Error{Usage} likewise.
@@ -37,11 +39,10 @@ class StageRegistry {
   std::set<StepId> readBefore(const std::set<StepId>& steps) const;
 
  private:
-  std::size_t indexOf(std::string_view stage) const;
   const StepInfo* find(const StepId& step) const;
 
-  std::vector<StageInfo> infos_;
-  std::vector<Maker> makers_;
+  std::vector<StageInfo> infos_, groups_;
+  std::vector<Maker> makers_;  // of groups_
 };
 
 // Of a result by its step; nothing of a step that this program does not have.

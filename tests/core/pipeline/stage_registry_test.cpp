@@ -48,6 +48,23 @@ const std::vector<StepInfo> kOneStep = {{.id = "import", .title = "Import"}};
 const std::vector<StepInfo> kWithLater = {
     {.id = "import", .title = "Import", .later = {.previous = {"light.import"_step}}}};
 
+// A group of settings that enter no key.
+TEST(StageRegistry, AStageWithoutStepsIsSettingsAlone) {
+  StageRegistry registry;
+  registry.add([] {
+    return std::make_unique<OneSetting>(std::vector<StepInfo>(), Setting{.effect = Effect::Pictures});
+  });
+  EXPECT_TRUE(registry.infos().empty());
+  ASSERT_EQ(registry.groups().size(), 1u);
+  const auto fields = registry.allFields([&](std::string_view id) { return registry.make(id); });
+  ASSERT_EQ(fields.size(), 1u);
+  EXPECT_EQ(fields[0].info.name, "light.gain");
+  EXPECT_THAT(messageOf(Error::Kind::Usage, [&] { registry.info("light"); }),
+              HasSubstr("nothing of it to run"));
+  EXPECT_THAT(messageOf(Error::Kind::Usage, [&] { registry.make("lihgt"); }), HasSubstr("lihgt"));
+  EXPECT_THAT(messageOf(Error::Kind::Bug, [] { add({}, {}); }), HasSubstr("enters no key"));
+}
+
 TEST(StepId, IsAStageAndANameAndComesFromTextOnlyWhereThatIsSaid) {
   const StepId step("surface", "fit");
   EXPECT_EQ(step, "surface.fit"_step);
