@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/io/file.h"
 #include "core/io/ply_file.h"
+#include "core/scene/thin_axis.h"
 
 namespace beam {
 namespace {
@@ -41,14 +42,6 @@ float* putSh(float* out, const float* sh, int channels) {
     for (int k = 1; k < kShCount; ++k) *out++ = sh[k * channels + c];
   }
   return out;
-}
-
-// The shortest axis, turned away from the middle of the cloud.
-vec3 outwardNormal(const GaussianCloud& cloud, std::size_t i, vec3 center) {
-  const vec3 s = cloud.scale_m[i];
-  const int axis = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
-  const vec3 n = glm::mat3_cast(cloud.rotation[i])[axis];
-  return glm::dot(n, cloud.position_m[i] - center) < 0 ? -n : n;
 }
 
 // Rows of a splat table by the names of their columns.
@@ -129,7 +122,7 @@ Materials materialsOf(const PlyElement& vertex, const Columns& columns) {
 }  // namespace
 
 void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud, const Materials* materials,
-                   const FileNotes& notes) {
+                   const FileNotes& notes, std::span<const float> normal_sides) {
   requireRowsWithin(cloud.size(), kMostPlyRows, "vertex", path);
   std::vector<std::string> columns = standardColumns();
   if (materials) {
@@ -143,12 +136,12 @@ void writeSplatPly(const std::filesystem::path& path, const GaussianCloud& cloud
   out += "end_header\n";
   const std::size_t header = out.size();
   out.resize(header + cloud.size() * columns.size() * 4);
-  vec3 center(0);
-  for (const vec3& p : cloud.position_m) center += p / static_cast<float>(cloud.size());
+  const vec3 center = normal_sides.empty() ? centerOf(cloud) : vec3(0);
   std::vector<float> row(columns.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     float* v = row.data();
-    const vec3 normal = outwardNormal(cloud, i, center);
+    const vec3 normal =
+        normal_sides.empty() ? outwardAxis(cloud, i, center) : normal_sides[i] * thinAxis(cloud, i);
     for (int k = 0; k < 3; ++k) *v++ = cloud.position_m[i][k];
     for (int k = 0; k < 3; ++k) *v++ = normal[k];
     v = putSh(v, cloud.color.of(i), 3);

@@ -187,4 +187,8 @@ Materials interpolateMaterials(const Materials& a, const Materials& b, double sh
           mixed(a.ambient_occlusion, b.ambient_occlusion, part)};
 }
 
+ShBlock interpolateSh(const ShBlock& a, const ShBlock& b, double share) {
+  return mixed(a, b, static_cast<float>(share));
+}
+
 }  // namespace beam

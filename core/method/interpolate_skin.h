@@ -19,5 +19,6 @@ GaussianCloud interpolateSkin(const CarriedSkin& a, const CarriedSkin& b, const 
 
 // Linear in physical values. Throws Error{Data} when the counts differ.
 Materials interpolateMaterials(const Materials& a, const Materials& b, double share);
+ShBlock interpolateSh(const ShBlock& a, const ShBlock& b, double share);
 
 }  // namespace beam

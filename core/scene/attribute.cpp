@@ -42,6 +42,12 @@ std::vector<AttributeSpan> attributesOf(const GaussianFrame& frame) {
   return attributesOf(frame.cloud, frame.materials ? &*frame.materials : nullptr, frame.attributes);
 }
 
+const Attribute* attributeNamed(const std::vector<Attribute>& all, std::string_view name) {
+  for (const Attribute& a : all)
+    if (a.info.name == name) return &a;
+  return nullptr;
+}
+
 void validate(const Attribute& a, std::size_t gaussians) {
   for (const AttributeInfo* typed : {&kOpacity, &kRadiance, &kRoughness, &kBaseColor, &kOcclusion}) {
     if (typed->name == a.info.name)

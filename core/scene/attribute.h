@@ -45,12 +45,17 @@ struct AttributeSpan {
 inline constexpr const char* kRoughnessName = "roughness";
 inline constexpr const char* kBaseColorName = "base_color";
 inline constexpr const char* kOcclusionName = "ambient_occlusion";
+// Of frames whose visibility was baked: the share of light from a direction that arrives, SH of directions in
+// the world; and 1 or -1, by which the thinnest axis (scene/thin_axis.h) is the outward normal.
+inline constexpr const char* kVisibilityName = "visibility";
+inline constexpr const char* kNormalSideName = "normal_side";
 
 // Every one: "opacity", "radiance", the materials' roughness, base colour and ambient occlusion where there
 // are some (null: none), then `own`. Valid as long as the values.
 std::vector<AttributeSpan> attributesOf(const GaussianCloud& cloud, const Materials* materials,
                                         const std::vector<Attribute>& own);
 std::vector<AttributeSpan> attributesOf(const GaussianFrame& frame);
+const Attribute* attributeNamed(const std::vector<Attribute>& all, std::string_view name);  // null: none
 
 // Throws Error{Data} unless it has 1 or 3 channels, 1 or kShCount coefficients, finite values for
 // `gaussians`, and a name that no typed one has.

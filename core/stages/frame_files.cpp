@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/stages/frame_files.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/io/visibility_ply.h"
+#include "core/scene/thin_axis.h"
 #include "core/stages/result_files.h"
 #include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
@@ -61,6 +65,20 @@ GaussianFrame readFrame(const StepId& step, const fs::path& folder) {
   if (with_materials) frame.materials = std::move(file.materials);
   frame.refined = step != kFitStep;
   return frame;
+}
+
+void addVisibility(VisibilityFile file, const fs::path& folder, GaussianFrame& frame) {
+  const std::size_t n = frame.cloud.size();
+  if (file.normal.size() != n) {
+    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected {} Gaussians, found {}",
+                                               (folder / kVisibilityFile).string(), n, file.normal.size()));
+  }
+  std::vector<float> sides(n);
+  for (std::size_t i = 0; i < n; ++i)
+    sides[i] = glm::dot(file.normal[i], thinAxis(frame.cloud, i)) < 0 ? -1.0f : 1.0f;
+  frame.attributes.push_back({{.name = kVisibilityName, .channels = 1, .coefficients = kShCount},
+                              std::move(file.visibility.coefficients)});
+  frame.attributes.push_back({{.name = kNormalSideName}, std::move(sides)});
 }
 
 FrameJoints readJoints(const fs::path& folder) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/io/visibility_ply.h"
 #include "core/pipeline/result_store.h"
 #include "core/pipeline/take_survey.h"
 #include "core/scene/gaussian_sequence.h"
@@ -13,6 +14,9 @@ namespace beam {
 
 // `folder`: a result of kMaterialsStep, kRefineStep or kFitStep.
 GaussianFrame readFrame(const StepId& step, const std::filesystem::path& folder);
+// Adds what was baked of the same surface, kVisibilityName and kNormalSideName. Throws Error{Data}, which
+// names the `folder` that it was read from, where it is of another number of Gaussians.
+void addVisibility(VisibilityFile file, const std::filesystem::path& folder, GaussianFrame& frame);
 FrameJoints readJoints(const std::filesystem::path& folder);  // of kJointsStep
 
 // --- Results of settings that are no longer in force: to look at, never to score or to export. Those that

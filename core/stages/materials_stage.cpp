@@ -3,7 +3,9 @@
 
 #include "core/io/image_file.h"
 #include "core/io/splat_ply.h"
+#include "core/io/visibility_ply.h"
 #include "core/method/bake_materials.h"
+#include "core/method/bake_visibility.h"
 #include "core/method/evaluate_motion.h"
 #include "core/method/fit_materials.h"
 #include "core/stages/builtin_stages.h"
@@ -55,11 +57,20 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
                    .later = {.inputs = {kJointsStep}, .previous = {kMaterialsStep}},
                    .work = {.photographs = true, .pixels = true, .downscale = kDownscale},
                    .memory = {.raise = {kDownscale}, .lower = {"surface.cap"}},
-                   .shown = {.frame = true, .surface = kRefineStep, .last = true}}}};
+                   .shown = {.frame = true, .surface = kRefineStep, .last = true}},
+                  {.id = "visibility",
+                   .title = "Bake visibility",
+                   .source = "methods 4.7",
+                   .inputs = {kImportStep, kScreenStep, kRefineStep},
+                   .weight = 2,
+                   .memory = {.lower = {"surface.cap"}}}}};
     return kInfo;
   }
 
-  void run(std::string_view step, StepContext& c) const override { step == "bake" ? bake(c) : fit(c); }
+  void run(std::string_view step, StepContext& c) const override {
+    if (step == "bake") return bake(c);
+    step == "fit" ? fit(c) : visibility(c);
+  }
 
  private:
   static GaussianCloud cloudOf(const StepContext& c) {
@@ -92,6 +103,21 @@ class MaterialsStage final : public StageOf<MaterialsOptions> {
     validate(materials, cloud);
     writeSplatPly(c.folder / kMaterialsFile, cloud, &materials);
     c.scores["views"] = static_cast<double>(baked.size());
+  }
+
+  void visibility(StepContext& c) const {
+    const GaussianCloud cloud = cloudOf(c);
+    Progress sides = c.progress.part(0.3, "sides of normals");
+    SeenSurface surface = seenSurface(cloud, trainingCameras(c), c.device, sides);
+    Progress rays = c.progress.part(0.7, "tracing");
+    VisibilityFile file;
+    file.visibility = bakeVisibility(cloud, surface,
+                                     {.offset_m = options_.bake.offset_m,
+                                      .threshold = options_.bake.threshold,
+                                      .seed = static_cast<std::uint64_t>(options_.bake.seed)},
+                                     c.device, rays);
+    file.normal = std::move(surface.normal);
+    writeVisibilityPly(c.folder / kVisibilityFile, file);
   }
 
   Materials materialsOf(StepContext& c, const MapSource& maps, const GaussianCloud& cloud) const {

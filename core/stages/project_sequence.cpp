@@ -12,6 +12,7 @@
 
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
+#include "core/io/visibility_ply.h"
 #include "core/method/follow_surface.h"
 #include "core/method/interpolate_skin.h"
 #include "core/stages/carried_skin.h"
@@ -33,6 +34,7 @@ struct SolvedFolders {
   fs::path skin, joints;
   std::optional<fs::path> materials;
   bool refined = false;
+  std::optional<fs::path> visibility = {};
 };
 // A frame between two members of a take.
 struct Around {
@@ -60,6 +62,12 @@ GaussianFrame interpolated(const SolvedPair& pair) {
   frame.interpolated = true;
   if (from.materials && to.materials)
     frame.materials = interpolateMaterials(*from.materials, *to.materials, between.share);
+  if (a.visibility && b.visibility) {
+    VisibilityFile visibility = readVisibilityPly(*a.visibility / kVisibilityFile);
+    visibility.visibility = interpolateSh(
+        visibility.visibility, readVisibilityPly(*b.visibility / kVisibilityFile).visibility, between.share);
+    addVisibility(std::move(visibility), *a.visibility, frame);
+  }
   return frame;
 }
 
@@ -120,6 +128,7 @@ class ProjectSequence final : public GaussianSequence {
     const bool older = !leftovers(frame).empty() && !project_.withoutCapture();
     if (older && !result(kMaterialsStep, frame))
       found = readOlderMaterials(project_.store(), leftovers(frame), key(kRefineStep, frame));
+    if (found) addVisibilityOf(frame, *found);
     if (!found) found = own(frame);
     if (!found && shows_ != Shows::Solved) {
       if (const std::optional<SolvedPair> pair = solvedPair(frame)) found = interpolated(*pair);
@@ -245,7 +254,7 @@ class ProjectSequence final : public GaussianSequence {
   // Keys of what there is of the frame.
   std::string keysIn(const Take& take, FrameIndex frame) const {
     std::string keys;
-    for (const StepId& step : {kMaterialsStep, kRefineStep, kFitStep, kMeshStep}) {
+    for (const StepId& step : {kMaterialsStep, kVisibilityStep, kRefineStep, kFitStep, kMeshStep}) {
       if (!isDoneIn(take, step, frame)) continue;
       std::lock_guard lock(mutex_);
       keys += project_.key(step, take, frame).hex();
@@ -260,9 +269,19 @@ class ProjectSequence final : public GaussianSequence {
     }
     return false;
   }
+  // Where there is some of its surface.
+  void addVisibilityOf(FrameIndex frame, GaussianFrame& found) const {
+    if (!found.refined) return;
+    if (const auto folder = result(kVisibilityStep, frame))
+      addVisibility(readVisibilityPly(*folder / kVisibilityFile), *folder, found);
+  }
   std::optional<GaussianFrame> own(FrameIndex frame) const {
     for (const StepId& step : kFrameSteps) {
-      if (const auto folder = result(step, frame)) return readFrame(step, *folder);
+      const auto folder = result(step, frame);
+      if (!folder) continue;
+      GaussianFrame found = readFrame(step, *folder);
+      addVisibilityOf(frame, found);
+      return found;
     }
     return std::nullopt;
   }
@@ -270,7 +289,9 @@ class ProjectSequence final : public GaussianSequence {
   std::optional<SolvedFolders> solvedAt(const Take& take, FrameIndex frame, const StepId& step) const {
     const auto skin = resultIn(take, step, frame), joints = resultIn(take, kJointsStep, frame);
     if (!skin || !joints) return std::nullopt;
-    return SolvedFolders{*skin, *joints, resultIn(take, kMaterialsStep, frame), step == kRefineStep};
+    const bool refined = step == kRefineStep;
+    return SolvedFolders{*skin, *joints, resultIn(take, kMaterialsStep, frame), refined,
+                         refined ? resultIn(take, kVisibilityStep, frame) : std::nullopt};
   }
   // The frame has no result of its own and lies between two that are solved, both as far as both are.
   std::optional<SolvedPair> solvedPair(FrameIndex frame) const {

@@ -8,6 +8,7 @@ inline constexpr const char* kSeedsFile = "seeds.ply";
 inline constexpr const char* kCloudFile = "cloud.ply";
 inline constexpr const char* kMeshFile = "mesh.ply";
 inline constexpr const char* kMaterialsFile = "materials.ply";
+inline constexpr const char* kVisibilityFile = "visibility.ply";  // of the Gaussians of the refined cloud
 inline constexpr const char* kEnvironmentFile = "environment.exr";
 // Gaussians, in the same order in all frames of a take.
 inline constexpr const char* kJointsFile = "joints.ply";

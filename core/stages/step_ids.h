@@ -17,5 +17,6 @@ inline const StepId kScoreStep("surface.score");
 inline const StepId kMeshStep("surface.mesh");
 inline const StepId kBakeStep("materials.bake");
 inline const StepId kMaterialsStep("materials.fit");
+inline const StepId kVisibilityStep("materials.visibility");
 
 }  // namespace beam

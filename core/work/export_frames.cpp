@@ -22,7 +22,8 @@ constexpr const char* kCommand = "export";
 
 // Writes whole files. `materials` may be null.
 using WriteFrame = void (*)(const std::filesystem::path& file, const GaussianCloud& cloud,
-                            const Materials* materials, const FileNotes& notes);
+                            const Materials* materials, const FileNotes& notes,
+                            std::span<const float> normal_sides);
 
 struct Format {
   ExportFormat info;
@@ -46,12 +47,14 @@ const Format& formatOf(const std::string& id) {
 void writeFrame(const GaussianFrame& frame, const Similarity3* frame_from_world, const Format& format,
                 const std::filesystem::path& file, const FileNotes& notes, const Progress& progress) {
   const Materials* materials = frame.materials ? &*frame.materials : nullptr;
-  if (!frame_from_world) return format.write(file, frame.cloud, materials, notes);
+  const Attribute* side = attributeNamed(frame.attributes, kNormalSideName);
+  const std::span<const float> sides = side ? std::span<const float>(side->values) : std::span<const float>();
+  if (!frame_from_world) return format.write(file, frame.cloud, materials, notes, sides);
   const GaussianCloud cloud = transformed(frame.cloud, *frame_from_world);
   std::optional<Materials> turned;
   if (materials) turned = transformed(*materials, *frame_from_world);
   progress.check();
-  format.write(file, cloud, turned ? &*turned : nullptr, notes);
+  format.write(file, cloud, turned ? &*turned : nullptr, notes, sides);
 }
 
 // By number where every frame of the sequence has one of its own, else by name.
