@@ -95,13 +95,20 @@ class CpuSceneRenderer final : public SceneRenderer {
     std::vector<std::string> further;
     for (const ChannelInfo& c : channels)
       if (!c.attribute.empty() && !drawnChannels().contains(c.id)) further.push_back(c.attribute);
-    if (view_ && camera_ == camera && further == further_) return;
+    const bool lit = std::any_of(channels.begin(), channels.end(),
+                                 [](const ChannelInfo& c) { return c.id == kRelightChannel; });
+    const bool same = view_ && camera_ == camera && further == further_;
+    const bool visibility =
+        resident_->has(kVisibilityName) && ((lit && transfers()) || (same && view_->hasVisibility()));
+    if (same && (!visibility || view_->hasVisibility())) return;
     view_ = nullptr;
     lit_ = nullptr;
-    view_ = &renderer_.draw(*resident_, camera, further);
+    view_ = &renderer_.draw(*resident_, camera, further, visibility);
     camera_ = camera;
     further_ = std::move(further);
   }
+
+  bool transfers() const { return environment_.shadows != kOcclusionAlone; }
 
   std::shared_ptr<const Planes> valuesOf(const ChannelInfo& channel) {
     if (channel.id == kRelightChannel) return lit();
@@ -120,7 +127,8 @@ class CpuSceneRenderer final : public SceneRenderer {
     auto values = pool_.take();
     view_->relit(*light_,
                  {.yaw_rad = static_cast<float>(environment_.rotation_deg * kPi / 180),
-                  .exposure = static_cast<float>(environment_.gain)},
+                  .exposure = static_cast<float>(environment_.gain),
+                  .transfer = transfers()},
                  *values);
     lit_by_ = light_;
     lit_as_ = environment_;

@@ -79,12 +79,13 @@ struct Surface {
   vec3 base_color;
   float occlusion, roughness;
   vec3 normal, to_eye;
+  const Visibility* visibility = nullptr;  // null: the occlusion holds in its place
 };
 
 // GTAO's fit of light that bounces between surfaces of the same colour (methods 5.11).
-vec3 multibounce(float a, vec3 rho) {
+vec3 multibounce(vec3 a, vec3 rho) {
   const vec3 x = 2.0404f * rho - 0.3324f, y = -4.7951f * rho + 0.6417f, z = 2.7552f * rho + 0.6903f;
-  return glm::max(vec3(a), ((a * x + y) * a + z) * a);
+  return glm::max(a, ((a * x + y) * a + z) * a);
 }
 
 // Lagarde's specular occlusion (methods 7.2).
@@ -104,12 +105,21 @@ Surface surfaceOf(vec3 base_color, float occlusion, float roughness, float alpha
 
 vec3 radiance(const Surface& s, const PreparedLight& light, const LightTurn& turn, const ShadeOptions& o) {
   const float n_dot_v = std::clamp(glm::dot(s.normal, s.to_eye), 1e-3f, 1.0f);
-  const vec3 occlusion = o.multibounce_ao ? multibounce(s.occlusion, s.base_color) : vec3(s.occlusion);
-  const vec3 diffuse = kDiffuseShare / kPi * s.base_color * irradiance(light, turn(s.normal)) * occlusion;
-  const vec3 mirror = glm::normalize(2 * glm::dot(s.normal, s.to_eye) * s.normal - s.to_eye);
+  const vec3 normal = turn(s.normal), open = irradiance(light, normal);
+  const vec3 mirror = turn(glm::normalize(2 * glm::dot(s.normal, s.to_eye) * s.normal - s.to_eye));
+  vec3 seen(s.occlusion);  // the share of `open` that arrives
+  float shadow = 1;        // the share of the highlight
+  if (s.visibility) {
+    const Visibility visibility = turn.of(*s.visibility);
+    seen = seenIrradiance(light.transfer, normal, visibility, open) / glm::max(open, vec3(1e-20f));
+    shadow = seenHighlight(visibility, mirror, s.roughness);
+  } else if (o.specular_occlusion) {
+    shadow = specularOcclusion(n_dot_v, s.occlusion, s.roughness);
+  }
+  const vec3 bounced = o.multibounce_ao ? multibounce(seen, s.base_color) : seen;
+  const vec3 diffuse = kDiffuseShare / kPi * s.base_color * open * bounced;
   const vec2 ab = splitSum(n_dot_v, s.roughness);
-  const float shadow = o.specular_occlusion ? specularOcclusion(n_dot_v, s.occlusion, s.roughness) : 1.0f;
-  return diffuse + shadow * (kF0 * ab.x + ab.y) * prefiltered(light, turn(mirror), s.roughness);
+  return diffuse + shadow * (kF0 * ab.x + ab.y) * prefiltered(light, mirror, s.roughness);
 }
 
 }  // namespace
@@ -162,18 +172,27 @@ void RasterView::attribute(std::string_view name, Planes& out) const {
   std::copy_n(extra(found->first), out.values.size(), out.values.begin());
 }
 
+Visibility RasterView::visibilityAt(std::size_t pixel, float alpha) const {
+  Visibility v;
+  for (int k = 0; k < kShCount; ++k) v[k] = extra(visibility_ + k)[pixel] / alpha;
+  return v;
+}
+
 void RasterView::relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const {
   requireMaterials("relit");
   shape(images_.alpha, 3, out);
   const Rays rays(camera_);
   const LightTurn turn(light, options.yaw_rad);
+  const bool transfer = options.transfer && hasVisibility();
   forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
     const float alpha = images_.alpha.values[i];
     if (alpha < kVisibleAlpha) return put(out, i, vec3(0));
     const vec3 base_color = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
-    const Surface s =
+    Surface s =
         surfaceOf(base_color, clampedShare(extra(kOcclusion)[i]), clampedShare(extra(kRoughness)[i]), alpha,
                   resolveNormal(triple(images_.normal, i), alpha, rays, x, y), rays.toEye(x, y));
+    const Visibility visibility = transfer ? visibilityAt(i, alpha) : Visibility{};
+    if (transfer) s.visibility = &visibility;
     put(out, i, options.exposure * alpha * beam::radiance(s, light, turn, options));
   });
 }
@@ -210,13 +229,19 @@ GBufferRenderer::GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes)
     : rasterizers_(device, kept_sizes) {}
 
 const RasterView& GBufferRenderer::draw(const ResidentScene& scene, const Camera& camera,
-                                        const std::vector<std::string>& further) {
+                                        const std::vector<std::string>& further, bool visibility) {
   static const std::vector<std::string> kMaterialNames = {kBaseColorName, kOcclusionName, kRoughnessName};
   view_.camera_ = camera;
   view_.materials_ = std::all_of(kMaterialNames.begin(), kMaterialNames.end(),
                                  [&](const std::string& name) { return scene.has(name); });
   std::vector<std::string> names = view_.materials_ ? kMaterialNames : std::vector<std::string>();
   int count = view_.materials_ ? kExtraCount : 0;
+  view_.visibility_ = -1;
+  if (visibility && view_.materials_ && scene.has(kVisibilityName)) {
+    names.push_back(coefficientsOf(kVisibilityName));
+    view_.visibility_ = count;
+    count += kShCount;
+  }
   view_.further_.clear();
   for (const AttributeInfo& info : scene.attributes()) {
     if (std::find(further.begin(), further.end(), info.name) == further.end()) continue;

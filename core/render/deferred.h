@@ -19,6 +19,8 @@ struct ShadeOptions {
   float exposure = 1;              // linear factor before encoding
   bool multibounce_ao = true;      // GTAO's coloured fit (methods 5.11)
   bool specular_occlusion = true;  // Lagarde (methods 7.2)
+  // By the visibility of a view that has some, in place of occlusion: the panorama casts shadows.
+  bool transfer = false;
 };
 
 // A view that was rasterised, and what each of its pixels holds. Planes are resized as needed and written
@@ -28,6 +30,7 @@ class RasterView {
  public:
   const Camera& camera() const { return camera_; }
   bool hasMaterials() const { return materials_; }
+  bool hasVisibility() const { return visibility_ >= 0; }
   void radiance(Planes& out) const;  // sRGB-encoded, composited on black
   void alpha(Planes& out) const;
   void depth(Planes& out) const;   // median z, metres, 0 where alpha < 0.5
@@ -45,10 +48,12 @@ class RasterView {
   friend class GBufferRenderer;
   const float* extra(int channel) const { return images_.extra.plane(channel); }
   void share(int channel, int count, Planes& out) const;
+  Visibility visibilityAt(std::size_t pixel, float alpha) const;
   void requireMaterials(const char* what) const;
 
   Camera camera_;
   bool materials_ = false;
+  int visibility_ = -1;  // first of its extra planes; -1: none
   struct Further {
     std::string name;
     int first = 0, channels = 1;  // of the extra planes
@@ -63,8 +68,9 @@ class GBufferRenderer {
  public:
   explicit GBufferRenderer(ComputeDevice& device, std::size_t kept_sizes = 1);
   // Valid until the next call. `further`: names of attributes of the scene that are drawn as well.
+  // `visibility`: it is drawn where the scene has some and materials.
   const RasterView& draw(const ResidentScene& scene, const Camera& camera,
-                         const std::vector<std::string>& further = {});
+                         const std::vector<std::string>& further = {}, bool visibility = false);
   GBuffer render(const ResidentScene& scene, const Camera& camera) { return draw(scene, camera).gbuffer(); }
 
  private:

@@ -238,11 +238,14 @@ PreparedLight prepareLight(const Environment& environment, const Progress& progr
   light.levels.resize(kLevels);
   for (int i = 1; i < kLevels; ++i)
     light.levels[i] = prefilteredLevel(light.radiance, i / (kLevels - 1.0f), progress);
+  light.transfer = prepareTransfer(light.radiance, progress);
   return light;
 }
 
 LightTurn::LightTurn(const PreparedLight& light, float yaw_rad)
-    : cos_(std::cos(-yaw_rad - light.yaw_rad)), sin_(std::sin(-yaw_rad - light.yaw_rad)) {}
+    : cos_(std::cos(-yaw_rad - light.yaw_rad)),
+      sin_(std::sin(-yaw_rad - light.yaw_rad)),
+      sh_(dmat3(cos_, 0, -sin_, 0, 1, 0, sin_, 0, cos_)) {}
 
 vec3 irradiance(const PreparedLight& light, vec3 normal) {
   return light.irradiance_map.empty() ? irradiance(light.irradiance_sh, normal)

@@ -13,6 +13,7 @@
 
 #include "core/base/progress.h"
 #include "core/image/image.h"
+#include "core/render/light_transfer.h"
 #include "core/scene/environment.h"
 
 namespace beam {
@@ -26,6 +27,7 @@ struct PreparedLight {
   Image<vec3> irradiance_map;           // 128 x 64; empty where SH hold all there is
   // GGX-filtered for roughness i / (size - 1); the first is empty: `radiance` itself. Interpolated between.
   std::vector<Image<vec3>> levels;
+  TransferTables transfer;  // for surfaces whose visibility is known
 };
 
 // Throws Cancelled when the progress is stopped.
@@ -35,10 +37,17 @@ PreparedLight prepareLight(const Environment& environment, const Progress& progr
 class LightTurn {
  public:
   LightTurn(const PreparedLight& light, float yaw_rad);
+  // c_k of the world's directions as they are of the panorama's.
+  Visibility of(const Visibility& visibility) const {
+    Visibility turned;
+    sh_.apply(1, visibility.data(), turned.data());
+    return turned;
+  }
   vec3 operator()(vec3 d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
 
  private:
   float cos_, sin_;
+  ShRotation sh_;
 };
 
 // Unit directions and normals in the panorama's axes.

@@ -44,8 +44,9 @@ void Rasterizer::forward(const ResidentScene& scene, std::span<const std::string
   requireFitting(camera);
   int channels = 0;
   for (const std::string& name : extra) {
-    require(scene.has(name), fmt::format("the scene has no attribute \"{}\"", name));
-    for (const AttributeInfo& info : scene.attributes()) channels += info.name == name ? info.channels : 0;
+    const int own = scene.channelsOf(name);
+    require(own > 0, fmt::format("the scene has no attribute \"{}\"", name));
+    channels += own;
   }
   require(channels == desc_.extra_channels, "the attributes have another number of channels");
   doForward(scene, extra, camera, background, images);

@@ -60,6 +60,14 @@ bool ResidentScene::has(std::string_view attribute) const {
                      [&](const AttributeInfo& info) { return info.name == attribute; });
 }
 
+int ResidentScene::channelsOf(std::string_view name) const {
+  const bool whole = name.ends_with(kCoefficientsMark);
+  if (whole) name.remove_suffix(kCoefficientsMark.size());
+  for (const AttributeInfo& info : attributes_)
+    if (info.name == name) return whole ? info.channels * info.coefficients : info.channels;
+  return 0;
+}
+
 void ResidentScene::load(const std::vector<RenderInstance>& instances) {
   for (const RenderInstance& instance : instances) check(instance);
   const std::vector<AttributeInfo> attributes = sharedAttributes(instances);

@@ -16,6 +16,12 @@ namespace beam {
 
 class ComputeDevice;
 
+// The name by which an attribute's coefficients themselves are drawn, whoever looks.
+inline constexpr std::string_view kCoefficientsMark = "[]";
+inline std::string coefficientsOf(std::string_view attribute) {
+  return std::string(attribute).append(kCoefficientsMark);
+}
+
 // One thread at a time.
 class ResidentScene {
  public:
@@ -30,6 +36,9 @@ class ResidentScene {
   // Beside shape, opacity and radiance: what every instance has, by name and description. It can be drawn.
   const std::vector<AttributeInfo>& attributes() const { return attributes_; }
   bool has(std::string_view attribute) const;
+  // Floats a Gaussian that can be drawn under that name: channels of an attribute, all numbers of one of
+  // coefficientsOf; 0: there is none.
+  int channelsOf(std::string_view name) const;
   // Gaussians that the last load packed; the others were there.
   std::size_t packed() const { return packed_; }
 

@@ -57,6 +57,14 @@ const RenderedChannel* channelIn(const RenderedPicture& picture, std::string_vie
   return found == picture.channels.end() ? nullptr : &*found;
 }
 
+bool lacksVisibility(const RenderScene& scene) {
+  const EnvironmentLight& light = scene.lighting.environment;
+  if (!light.enabled || light.shadows == kOcclusionAlone) return false;
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [](const RenderInstance& i) {
+    return i.materials && !attributeNamed(*i.attributes, kVisibilityName);
+  });
+}
+
 std::vector<std::string> leftOut(const RenderScene& scene, const RendererAbilities& abilities) {
   std::vector<std::string> sentences = scene.missing;
   if (scene.environment && scene.lighting.environment.enabled && !abilityOf(abilities, "environment"))

@@ -72,6 +72,15 @@ void describeCone(Fields& f, const char* name, const char* label, const char* he
 
 }  // namespace
 
+FieldInfo environmentShadowsInfo(std::string name) {
+  return {.name = std::move(name),
+          .label = "Environment shadows",
+          .help =
+              "How a panorama's light is kept off: by the visibility of each Gaussian (transfer), by "
+              "ambient occlusion alone as in the paper (ao), or by the first where it was baked (auto).",
+          .choices = {"auto", "transfer", kOcclusionAlone}};
+}
+
 void describe(Fields& f, EnvironmentLight& light) {
   f.field({.name = "enabled", .label = "Environment", .help = "Whether light comes from all around."},
           light.enabled);
@@ -86,6 +95,7 @@ void describe(Fields& f, EnvironmentLight& light) {
           light.rotation_deg);
   f.field({.name = "gain", .label = "Gain", .help = "Times the panorama's own radiance.", .min = 0},
           light.gain);
+  f.field(environmentShadowsInfo("shadows"), light.shadows);
   f.field({.name = "background",
            .label = "As background",
            .help = "Whether the panorama is seen behind the subject; else the look's background is."},

@@ -26,11 +26,17 @@ struct EnvironmentLight {
   FileReference file = {};  // empty: the light that the performance was captured in
   double rotation_deg = 0;  // about +Y, further than the panorama's own; positive moves it from +Z towards +X
   double gain = 1;          // times the panorama's own, >= 0
-  bool background = false;  // it is what is seen behind the subject; false: the look's background is
+  // What keeps it off: "transfer" is the visibility that was baked of each Gaussian, "ao" the paper's ambient
+  // occlusion, "auto" the first where all Gaussians have some.
+  std::string shadows = "auto";
+  bool background = false;     // it is what is seen behind the subject; false: the look's background is
   std::string unknown = "{}";  // members of a later version, kept as they are (a JSON object)
 
   bool operator==(const EnvironmentLight&) const = default;
 };
+inline constexpr const char* kOcclusionAlone = "ao";
+// The one declaration of that choice: of an environment, and of a project for pictures without a look.
+FieldInfo environmentShadowsInfo(std::string name);
 void describe(Fields& f, EnvironmentLight& light);
 
 // From infinitely far: a sun.

@@ -145,6 +145,7 @@ std::vector<const float*> CpuResidentScene::seenFrom(vec3 eye, std::span<const s
   std::vector<const AttributePlanes*> by_direction;
   std::size_t rows = 0;
   for (const std::string& name : attributes) {
+    if (name.ends_with(kCoefficientsMark)) continue;
     const AttributePlanes& planes = named(name);
     if (!planes.info.turns()) continue;
     by_direction.push_back(&planes);
@@ -155,6 +156,12 @@ std::vector<const float*> CpuResidentScene::seenFrom(vec3 eye, std::span<const s
   std::vector<const float*> seen;
   const float* next = scratch.data();
   for (const std::string& name : attributes) {
+    if (name.ends_with(kCoefficientsMark)) {
+      const AttributePlanes& planes = named(name.substr(0, name.size() - kCoefficientsMark.size()));
+      for (std::size_t p = 0; p < planesOf(planes.info); ++p)
+        seen.push_back(planes.values.data() + p * stride);
+      continue;
+    }
     const AttributePlanes& planes = named(name);
     const bool turns = planes.info.turns();
     for (int c = 0; c < planes.info.channels; ++c)

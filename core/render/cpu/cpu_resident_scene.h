@@ -16,7 +16,8 @@ class CpuResidentScene final : public ResidentScene {
   const GaussianBuffers& gaussians() const { return gaussians_; }
 
   // A plane of the scene's Gaussians for every channel of the named attributes, in their order: SH seen from
-  // `eye`, value(d) = 0.5 + sum_k basis_k(d) c_k, not clamped; plain values as they are. Valid until
+  // `eye`, value(d) = 0.5 + sum_k basis_k(d) c_k, not clamped; plain values, and what coefficientsOf names
+  // (coefficient after coefficient), as they are. Valid until
   // `scratch` or the scene changes.
   std::vector<const float*> seenFrom(vec3 eye, std::span<const std::string> attributes,
                                      AlignedVector<float>& scratch) const;

@@ -116,8 +116,8 @@ TEST(Fields, ListEveryScalarOfEachKind) {
   EXPECT_EQ(fieldsOf(SpotLight{}).size(), scalarsOf(a3, b3, c3, d3, e3, f3, g3, h3));
   const auto& [a4, b4, c4, d4, e4, f4, g4, h4] = RectangleLight{};
   EXPECT_EQ(fieldsOf(RectangleLight{}).size(), scalarsOf(a4, b4, c4, d4, e4, f4, g4, h4));
-  const auto& [a5, b5, c5, d5, e5, unknown5] = EnvironmentLight{};
-  EXPECT_EQ(fieldsOf(EnvironmentLight{}).size(), scalarsOf(a5, b5, c5, d5, e5));
+  const auto& [a5, b5, c5, d5, e5, f5, unknown5] = EnvironmentLight{};
+  EXPECT_EQ(fieldsOf(EnvironmentLight{}).size(), scalarsOf(a5, b5, c5, d5, e5, f5));
   const auto& [a6, b6, unknown6] = Background{};
   EXPECT_EQ(fieldsOf(Background{}).size(), scalarsOf(a6, b6));
   const auto& [a7, b7, unknown7] = CameraPath{};
