@@ -9,14 +9,6 @@
 namespace beam {
 namespace {
 
-// Reflectance times cosine.
-vec3 scatter(const PathHit& h, vec3 n, vec3 wi, vec3 wo) {
-  const float cosine = glm::dot(n, wi);
-  if (cosine <= 0) return vec3(0);
-  const Reflectance r = reflectance(n, wi, wo, ggxAlpha(h.roughness));
-  return (h.base_color * ((1 - r.fresnel) / kPi) + vec3(r.specular)) * cosine;
-}
-
 bool isLit(vec3 c) { return c.x + c.y + c.z > 0; }
 
 }  // namespace
@@ -33,39 +25,75 @@ vec2 PathNumbers::next() {
   return {(stratum + u) / static_cast<float>(strata_), v};
 }
 
+PathIntegrator::Scattered PathIntegrator::scatter(const PathHit& h, vec3 n, vec3 wi, vec3 wo) const {
+  const float cosine = glm::dot(n, wi), even = cosine / kPi;
+  if (cosine <= 0) return {};
+  if (!settings_.specular) return {h.base_color * even, even};
+  const Reflectance r = reflectance(n, wi, wo, ggxAlpha(h.roughness));
+  return {(h.base_color * ((1 - r.fresnel) / kPi) + vec3(r.specular)) * cosine,
+          settings_.visible_normals ? 0.5f * (even + r.reflection_pdf) : even};
+}
+
+vec3 PathIntegrator::drawnBySurface(const PathHit& h, vec3 n, vec3 wo, PathNumbers& numbers) const {
+  vec2 u = numbers.next();
+  const Frame3 frame(n);
+  if (settings_.visible_normals && settings_.specular) {
+    const bool lobe = u.y < 0.5f;
+    u.y = lobe ? 2 * u.y : 2 * u.y - 1;
+    const vec3 eye = frame.toLocal(wo);
+    if (lobe && eye.z > 0) {
+      const vec3 half = visibleNormal(eye, ggxAlpha(h.roughness), u);
+      return glm::normalize(frame.toWorld(2 * glm::dot(eye, half) * half - eye));
+    }
+  }
+  return frame.toWorld(cosineDirection(u));
+}
+
 vec3 PathIntegrator::direct(const PathHit& h, vec3 n, vec3 wo, PathNumbers& numbers) const {
   vec3 sum(0);
   const vec3 o = h.position_m + settings_.offset_m * n;
-  const vec2 u = numbers.next(), c = numbers.next();
-  const auto add = [&](const LightSample& s, vec3 wi) {
-    const float cosine = glm::dot(n, wi);
-    if (cosine <= 0 || s.pdf + cosine <= 0) return;
-    const vec3 f = scatter(h, n, wi, wo) * s.radiance / (s.pdf + cosine / kPi);
-    if (isLit(f) && !surfaces_.occluded(o, wi)) sum += f;
+  const auto add = [&](const LightSample& s, vec3 wi, bool of_light) {
+    const Scattered f = scatter(h, n, wi, wo);
+    const float density = settings_.draws == LightDraws::Both ? s.pdf + f.pdf : of_light ? s.pdf : f.pdf;
+    if (f.pdf <= 0 || density <= 0) return;
+    const vec3 light = f.value * s.radiance / density;
+    if (isLit(light)) sum += light * surfaces_.transmittance(o, wi);
   };
-  const LightSample drawn = lights_.sample(u);
-  add(drawn, drawn.direction);
-  const vec3 wi = Frame3(n).toWorld(cosineDirection(c));
-  add(lights_.at(wi), wi);
+  const vec2 u = numbers.next();
+  const vec3 wi = drawnBySurface(h, n, wo, numbers);
+  if (settings_.draws != LightDraws::OfSurface) {
+    const LightSample drawn = lights_.sample(u);
+    add(drawn, drawn.direction, true);
+  }
+  if (settings_.draws != LightDraws::OfLights) add(lights_.at(wi), wi, false);
   return sum;
 }
 
-vec3 PathIntegrator::radiance(PathHit h, vec3 wo, PathNumbers& numbers) const {
-  vec3 sum(0), throughput(1);
+PathRadiance PathIntegrator::trace(PathHit h, vec3 wo, PathNumbers& numbers) const {
+  PathRadiance sum;
+  vec3 throughput(1);
   for (int bounce = 0;; ++bounce) {
     const vec3 n = glm::dot(h.normal, wo) < 0 ? -h.normal : h.normal;
-    sum += throughput * direct(h, n, wo, numbers);
+    sum.all += throughput * direct(h, n, wo, numbers);
+    if (bounce == 0) sum.direct = sum.all;
     if (bounce == settings_.bounces) break;
-    const vec3 wi = Frame3(n).toWorld(cosineDirection(numbers.next()));
+    const vec3 wi = drawnBySurface(h, n, wo, numbers);
     const float cosine = glm::dot(n, wi);
     if (cosine <= 1e-4f) break;
-    throughput *= scatter(h, n, wi, wo) * (kPi / cosine);
-    const std::optional<PathHit> next = surfaces_.nearest(h.position_m + settings_.offset_m * n, wi);
+    const Scattered f = scatter(h, n, wi, wo);
+    throughput *= f.value * (settings_.visible_normals ? 1 / f.pdf : kPi / cosine);
+    if (settings_.sure_bounces > 0 && bounce >= settings_.sure_bounces) {
+      const float goes_on = std::min(1.0f, std::max({throughput.x, throughput.y, throughput.z}));
+      if (!(numbers.next().x < goes_on)) break;
+      throughput /= goes_on;
+    }
+    const std::optional<PathHit> next =
+        surfaces_.nearest(h.position_m + settings_.offset_m * n, wi, numbers.bits());
     if (!next) break;
     h = *next;
     wo = -wi;
   }
-  return glm::min(sum, vec3(settings_.brightest));
+  return {glm::min(sum.all, vec3(settings_.brightest)), glm::min(sum.direct, vec3(settings_.brightest))};
 }
 
 float skyVisibility(const PathSurfaces& surfaces, vec3 x_m, vec3 normal, int samples, PathNumbers numbers) {
@@ -75,8 +103,9 @@ float skyVisibility(const PathSurfaces& surfaces, vec3 x_m, vec3 normal, int sam
   const R2Sequence sequence{static_cast<std::uint32_t>(start.x * 0x1p31f),
                             static_cast<std::uint32_t>(start.y * 0x1p31f)};
   for (int i = 0; i < samples; ++i) {
-    open += !surfaces.occluded(x_m + PathSettings{}.offset_m * normal,
-                               frame.toWorld(cosineDirection(sequence(static_cast<std::uint32_t>(i)))));
+    open +=
+        surfaces.transmittance(x_m + PathSettings{}.offset_m * normal,
+                               frame.toWorld(cosineDirection(sequence(static_cast<std::uint32_t>(i))))) > 0;
   }
   return static_cast<float>(open) / static_cast<float>(samples);
 }

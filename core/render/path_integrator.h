@@ -6,9 +6,10 @@
 //   D(x)    = integral over the hemisphere of f(i, o) L_light(i) V(x, i) (n.i) di
 //   f       = base_color (1 - F) / pi + D G F / (4 (n.i)(n.o))       BEAM eq. 12 and 19, methods 5.4
 //
-// D by one direction of the lights' density and one of the cosine's, with the balance heuristic: both count
-// f L V (n.i) / (p_light + (n.i) / pi). T_k+1 = T_k pi f, for a direction drawn by the cosine. World axes,
-// metres; radiance in the units of the lights, scene-linear. Deterministic for the numbers of the path.
+// D by one direction of the lights' density and one of the surface's, with the balance heuristic: both count
+// f L V (n.i) / (p_light + p_surface). p_surface is (n.i) / pi, or half of that and half the density of GGX's
+// visible normals. T_k+1 = T_k f (n.i) / p_surface. World axes, metres; radiance in the units of the lights,
+// scene-linear. Deterministic for the numbers of the path.
 #pragma once
 
 #include <optional>
@@ -31,9 +32,10 @@ struct PathHit {
 class PathSurfaces {
  public:
   virtual ~PathSurfaces() = default;
-  // `direction`: unit.
-  virtual std::optional<PathHit> nearest(vec3 origin_m, vec3 direction) const = 0;
-  virtual bool occluded(vec3 origin_m, vec3 direction) const = 0;  // by anything, however far
+  // `direction`: unit. `chance`: of this ray; a surface that stops light in part is met or not by it.
+  virtual std::optional<PathHit> nearest(vec3 origin_m, vec3 direction, std::uint64_t chance) const = 0;
+  // Of light from however far: 1 where nothing is in its way, 0 where it does not get through.
+  virtual float transmittance(vec3 origin_m, vec3 direction) const = 0;
 };
 
 struct LightSample {
@@ -67,16 +69,33 @@ class PathNumbers {
  public:
   PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples);
   vec2 next();
+  // 64 bits that no pair is made of, others at each call.
+  std::uint64_t bits() { return random_.bits(~(sample_ * 65537 + chances_++)); }
 
  private:
   RandomStream random_;
-  std::uint64_t sample_, strata_, dimension_ = 0;
+  std::uint64_t sample_, strata_, dimension_ = 0, chances_ = 0;
 };
 
+// Which directions tell of light from the lights; either alone gives the same mean.
+enum class LightDraws { Both, OfLights, OfSurface };
+
 struct PathSettings {
-  int bounces = 2;         // after the first hit; 0: light from the lights alone
-  float offset_m = 3e-4f;  // of a path's next ray along the normal, so that it leaves its surface
-  float brightest = 20;    // at most, of one path in a channel, against fireflies
+  int bounces = 2;               // after the first hit; 0: light from the lights alone
+  float offset_m = 3e-4f;        // of a path's next ray along the normal, so that it leaves its surface
+  float brightest = 20;          // at most, of one path in a channel, against fireflies
+  bool visible_normals = false;  // half of a surface's directions are drawn by its specular lobe
+  // Bounces after which a path goes on with the probability of its throughput; 0: all of them do.
+  int sure_bounces = 0;
+  // --- What tests take apart ---
+  bool specular = true;  // false: no lobe and no Fresnel, base colour / pi is left
+  LightDraws draws = LightDraws::Both;
+};
+
+// Of one path.
+struct PathRadiance {
+  vec3 all{0};
+  vec3 direct{0};  // of `all`: past no other surface
 };
 
 class PathIntegrator {
@@ -86,9 +105,19 @@ class PathIntegrator {
       : surfaces_(surfaces), lights_(lights), settings_(settings) {}
 
   // One path's estimate of what leaves `hit` towards the eye.
-  vec3 radiance(PathHit hit, vec3 to_eye, PathNumbers& numbers) const;
+  PathRadiance trace(PathHit hit, vec3 to_eye, PathNumbers& numbers) const;
+  vec3 radiance(const PathHit& hit, vec3 to_eye, PathNumbers& numbers) const {
+    return trace(hit, to_eye, numbers).all;
+  }
 
  private:
+  // Reflectance times cosine, and p_surface.
+  struct Scattered {
+    vec3 value{0};
+    float pdf = 0;
+  };
+  Scattered scatter(const PathHit& hit, vec3 normal, vec3 to_light, vec3 to_eye) const;
+  vec3 drawnBySurface(const PathHit& hit, vec3 normal, vec3 to_eye, PathNumbers& numbers) const;
   vec3 direct(const PathHit& hit, vec3 normal, vec3 to_eye, PathNumbers& numbers) const;
 
   const PathSurfaces& surfaces_;

@@ -104,7 +104,7 @@ struct SampleScene::State final : PathSurfaces {
     return r;
   }
 
-  std::optional<PathHit> nearest(vec3 o, vec3 d) const override {
+  std::optional<PathHit> nearest(vec3 o, vec3 d, std::uint64_t = 0) const override {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit rh{};
@@ -123,12 +123,12 @@ struct SampleScene::State final : PathSurfaces {
         .roughness = look.roughness};
   }
 
-  bool occluded(vec3 o, vec3 d) const override {
+  float transmittance(vec3 o, vec3 d) const override {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay r = rayOf3(o, d);
     rtcOccluded1(scene, &context, &r);
-    return r.tfar < 0;
+    return r.tfar < 0 ? 0.0f : 1.0f;
   }
 
   struct CameraRays {

@@ -51,6 +51,11 @@ inline constexpr const char* kRoughnessChannel = "roughness";
 inline constexpr const char* kNormalChannel = "normal";
 inline constexpr const char* kDepthChannel = "depth";
 inline constexpr const char* kAlphaChannel = "alpha";
+// Of the reference: light past no other surface and past one or more, which add up to relight; and the
+// variance of relight's luminance, before it is denoised.
+inline constexpr const char* kDirectChannel = "direct";
+inline constexpr const char* kIndirectChannel = "indirect";
+inline constexpr const char* kVarianceChannel = "variance";
 inline constexpr const char* kMeshChannel = "mesh";
 
 // The table, in the order in which channels are listed.

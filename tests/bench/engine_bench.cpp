@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/base/rng.h"
 #include "core/optim/gaussian_model.h"
 #include "core/render/cpu/embree_tracer.h"
@@ -132,6 +133,25 @@ void OcclusionRays(benchmark::State& s) {
 }
 void OcclusionRaysEmbree(benchmark::State& s) { occlusionRays(s, *makeEmbreeTracer({}, cloudForRays(s))); }
 
+// The same rays as light paths follow them: what gets through, and where they end.
+template <class Trace>
+void blendedRays(benchmark::State& s, Trace&& trace) {
+  const auto tracer = makeCpuDevice()->newTracer({}, cloudForRays(s));
+  const std::vector<Ray> rays = testing::capsuleRays(4000, 50, 0.01f);
+  for (auto _ : s) {
+    parallelFor(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) benchmark::DoNotOptimize(trace(*tracer, rays[i], i));
+    });
+  }
+  s.SetItemsProcessed(s.iterations() * static_cast<std::int64_t>(rays.size()));
+}
+void TransmittanceRays(benchmark::State& s) {
+  blendedRays(s, [](const Tracer& t, const Ray& ray, std::size_t) { return t.transmittance(ray); });
+}
+void DrawnRays(benchmark::State& s) {
+  blendedRays(s, [](const Tracer& t, const Ray& ray, std::size_t i) { return t.drawn(ray, mixBits(i)); });
+}
+
 void TracerBuild(benchmark::State& s) {
   const GaussianCloud cloud = cloudForRays(s);
   for (auto _ : s) benchmark::DoNotOptimize(makeSplatBvhTracer({}, cloud));
@@ -169,6 +189,8 @@ BENCHMARK(Ssim)->Args({480, 640})->Args({1920, 1080})->Unit(benchmark::kMillisec
 BENCHMARK(Adam)->Arg(140000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(OcclusionRays)->Apply(clouds);
 BENCHMARK(OcclusionRaysEmbree)->Apply(clouds);
+BENCHMARK(TransmittanceRays)->Apply(clouds);
+BENCHMARK(DrawnRays)->Apply(clouds);
 BENCHMARK(TracerBuild)->Apply(clouds);
 BENCHMARK(TracerFollow)->Apply(clouds);
 

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "core/base/error.h"
@@ -30,17 +31,25 @@ scalar::RayTarget<float> targetOf(const RaySplat& s) {
           s.cut2};
 }
 
-std::uint64_t alphaAlong(const RaySplat& splat, const scalar::RayLine<float>& line, bool ignore_containing) {
+struct Met {
+  float units = 0;  // of alpha; 0: it is not met
+  float at = 0;     // ray parameter of its maximum
+};
+
+Met metBy(const RaySplat& splat, const scalar::RayLine<float>& line, bool ignore_containing) {
   const scalar::RayTarget<float> target = targetOf(splat);
   const scalar::Encounter<float> e = scalar::encounter(target, line);
-  if (!scalar::meets(target, e) || !scalar::isAhead(e)) return 0;
-  if (ignore_containing && scalar::holdsOrigin(target, line)) return 0;
-  return static_cast<std::uint64_t>(scalar::alphaUnits(target, e));
+  if (!scalar::meets(target, e) || !scalar::isAhead(e)) return {};
+  if (ignore_containing && scalar::holdsOrigin(target, line)) return {};
+  return {scalar::alphaUnits(target, e), scalar::maximumAt(e)};
 }
+
+// on_met(index of the splat, Met) returns whether the ray goes on.
+using OnMet = std::function<bool(std::uint32_t, const Met&)>;
 
 struct RayState : RTCIntersectContext {
   scalar::RayLine<float> line;
-  std::uint64_t sum, free;
+  const OnMet* on_met;
 };
 
 struct Release {
@@ -53,7 +62,8 @@ class EmbreeTracer final : public Tracer {
   EmbreeTracer(const TracerDesc& desc, const GaussianCloud& cloud)
       : ignore_containing_(desc.ignore_containing),
         free_(freeAlphaUnits(desc)),
-        splats_(raySplats(desc, cloud)) {
+        splats_(raySplats(desc, cloud)),
+        met_(metSplats(desc, cloud)) {
     // A fixed instruction set: the same tree on every machine.
     device_.reset(rtcNewDevice("isa=avx2"));
     if (!device_)
@@ -69,8 +79,31 @@ class EmbreeTracer final : public Tracer {
     });
   }
 
+  float transmittance(const Ray& ray, const BlendRules& rules) const override {
+    std::uint64_t sum = 0;
+    along(ray, [&](std::uint32_t splat, const Met& met) {
+      if (met.at < rules.reach_m && rules.counts(met_[splat], ray.direction))
+        sum += absorbanceUnits(met.units);
+      return sum <= kOpaqueUnits;
+    });
+    return transmittanceOf(sum);
+  }
+
+  std::optional<SplatHit> drawn(const Ray& ray, std::uint64_t draw, const BlendRules& rules) const override {
+    std::optional<SplatHit> hit;
+    along(ray, [&](std::uint32_t splat, const Met& met) {
+      if (met.at < (hit ? hit->distance_m : rules.reach_m) && endsIn(met_[splat], met.units, draw) &&
+          rules.counts(met_[splat], ray.direction))
+        hit = SplatHit{met_[splat], met.at};
+      return true;
+    });
+    return hit;
+  }
+
   std::uint64_t alphaSum(const Ray& ray) const override { return sumAlong(ray, UINT64_MAX); }
-  std::size_t memoryBytes() const override { return bytes_ + splats_.capacity() * sizeof(RaySplat); }
+  std::size_t memoryBytes() const override {
+    return bytes_ + splats_.capacity() * sizeof(RaySplat) + met_.capacity() * sizeof(met_[0]);
+  }
 
  private:
   static bool countMemory(void* self, ssize_t bytes, bool) {
@@ -107,18 +140,26 @@ class EmbreeTracer final : public Tracer {
     if (a->valid[0] != -1) return;
     const auto* self = static_cast<const EmbreeTracer*>(a->geometryUserPtr);
     auto* state = static_cast<RayState*>(a->context);
-    state->sum += alphaAlong(self->splats_[a->primID], state->line, self->ignore_containing_);
-    if (state->sum > state->free) {
+    const Met met = metBy(self->splats_[a->primID], state->line, self->ignore_containing_);
+    if (met.units > 0 && !(*state->on_met)(a->primID, met)) {
       reinterpret_cast<RTCRay*>(a->ray)->tfar = -INFINITY;  // any-hit stop
     }
   }
 
   std::uint64_t sumAlong(const Ray& ray, std::uint64_t free) const {
+    std::uint64_t sum = 0;
+    along(ray, [&](std::uint32_t, const Met& met) {
+      sum += static_cast<std::uint64_t>(met.units);
+      return sum <= free;
+    });
+    return sum;
+  }
+
+  void along(const Ray& ray, const OnMet& on_met) const {
     RayState state;
     rtcInitIntersectContext(&state);
     state.line = lineOf(ray);
-    state.sum = 0;
-    state.free = free;
+    state.on_met = &on_met;
     RTCRay r{};
     r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
     r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
@@ -126,12 +167,12 @@ class EmbreeTracer final : public Tracer {
     r.tfar = INFINITY;
     r.mask = 0xffffffffu;
     rtcOccluded1(scene_.get(), &state, &r);
-    return state.sum;
   }
 
   bool ignore_containing_;
   std::uint64_t free_;
   std::vector<RaySplat> splats_;
+  std::vector<std::uint32_t> met_;        // their indices in the cloud
   std::atomic<std::ptrdiff_t> bytes_{0};  // outlives the device, which reports to it
   std::unique_ptr<RTCDeviceTy, Release> device_;
   std::unique_ptr<RTCSceneTy, Release> scene_;

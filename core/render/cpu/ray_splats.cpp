@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/rng.h"
 #include "core/render/kernels/response.h"
 
 namespace beam {
@@ -50,6 +51,13 @@ void growByRounding(std::vector<RaySplat>& splats) {
 
 }  // namespace
 
+std::vector<std::uint32_t> metSplats(const TracerDesc& desc, const GaussianCloud& cloud) {
+  std::vector<std::uint32_t> met;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.opacity[i] > desc.cut_response) met.push_back(static_cast<std::uint32_t>(i));
+  return met;
+}
+
 std::vector<RaySplat> raySplats(const TracerDesc& desc, const GaussianCloud& cloud) {
   if (!(desc.cut_response > 0) || !(desc.threshold >= 0)) {
     throw Error(Error::Kind::Bug,
@@ -57,12 +65,26 @@ std::vector<RaySplat> raySplats(const TracerDesc& desc, const GaussianCloud& clo
                             desc.cut_response, desc.threshold));
   }
   std::vector<RaySplat> splats;
-  splats.reserve(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.opacity[i] > desc.cut_response) splats.push_back(splatOf(cloud, i, desc.cut_response));
-  }
+  const std::vector<std::uint32_t> met = metSplats(desc, cloud);
+  splats.reserve(met.size());
+  for (const std::uint32_t i : met) splats.push_back(splatOf(cloud, i, desc.cut_response));
   growByRounding(splats);
   return splats;
+}
+
+bool endsIn(std::uint32_t splat, float units, std::uint64_t draw) {
+  const float u = static_cast<float>(mixBits(draw ^ splat * 0x9e3779b97f4a7c15ull) >> 40) * 0x1p-24f;
+  return u < std::min(units / scalar::kAlphaUnits, kMostAlpha);
+}
+
+std::uint64_t absorbanceUnits(float units) {
+  const float alpha = std::min(units / scalar::kAlphaUnits, kMostAlpha);
+  return static_cast<std::uint64_t>(-std::log1p(-alpha) * scalar::kAlphaUnits + 0.5f);
+}
+
+float transmittanceOf(std::uint64_t absorbance_units) {
+  if (absorbance_units > kOpaqueUnits) return 0;
+  return std::exp(-static_cast<float>(absorbance_units) / scalar::kAlphaUnits);
 }
 
 std::uint64_t freeAlphaUnits(const TracerDesc& desc) {

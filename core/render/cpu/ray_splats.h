@@ -22,6 +22,17 @@ struct RaySplat {
 // nonsense.
 std::vector<RaySplat> raySplats(const TracerDesc& desc, const GaussianCloud& cloud);
 
+// Their indices in the cloud.
+std::vector<std::uint32_t> metSplats(const TracerDesc& desc, const GaussianCloud& cloud);
+
+// Whether a ray of this chance ends in the Gaussian (Tracer::drawn). `units`: its alpha in 1 / kAlphaUnits.
+bool endsIn(std::uint32_t splat, float units, std::uint64_t draw);
+// -ln(1 - alpha) in units of 2^-20, whole: sums do not depend on their order.
+std::uint64_t absorbanceUnits(float units);
+// Of a sum of these; 0 above kOpaqueUnits.
+inline constexpr std::uint64_t kOpaqueUnits = 7268408;  // ln(1024)
+float transmittanceOf(std::uint64_t absorbance_units);
+
 // The largest whole sum of alphas that does not block.
 std::uint64_t freeAlphaUnits(const TracerDesc& desc);
 

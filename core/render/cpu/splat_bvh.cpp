@@ -23,13 +23,22 @@ std::shared_ptr<const SplatBvh> moved(const SplatBvh* last, const std::vector<Ra
 
 class SplatBvhTracer final : public Tracer {
  public:
-  SplatBvhTracer(const TracerDesc& desc, std::shared_ptr<const SplatBvh> tree)
-      : rules_{freeAlphaUnits(desc), desc.ignore_containing}, tree_(std::move(tree)) {}
+  SplatBvhTracer(const TracerDesc& desc, const GaussianCloud& cloud, std::shared_ptr<const SplatBvh> tree)
+      : rules_{freeAlphaUnits(desc), desc.ignore_containing},
+        tree_(std::move(tree)),
+        met_(metSplats(desc, cloud)) {}
 
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const override {
     parallelFor(rays.size(), kRayGrain, [&](std::size_t begin, std::size_t end) {
       traceBlocked(*tree_, rules_, rays.subspan(begin, end - begin), blocked.data() + begin);
     });
+  }
+
+  float transmittance(const Ray& ray, const BlendRules& rules) const override {
+    return transmittanceOf(traceAbsorbance(blended(rules), ray));
+  }
+  std::optional<SplatHit> drawn(const Ray& ray, std::uint64_t draw, const BlendRules& rules) const override {
+    return traceDrawn(blended(rules), ray, draw);
   }
 
   std::uint64_t alphaSum(const Ray& ray) const override {
@@ -38,18 +47,23 @@ class SplatBvhTracer final : public Tracer {
 
   std::size_t memoryBytes() const override {
     return tree_->nodes.capacity() * sizeof(SplatNode) + tree_->blocks.capacity() * sizeof(SplatBlock) +
-           tree_->splat.capacity() * sizeof(tree_->splat[0]);
+           tree_->splat.capacity() * sizeof(tree_->splat[0]) + met_.capacity() * sizeof(met_[0]);
   }
 
  private:
+  BlendedRays blended(const BlendRules& rules) const {
+    return {*tree_, met_, rules_.ignore_containing, rules};
+  }
+
   RayRules rules_;
   std::shared_ptr<const SplatBvh> tree_;
+  std::vector<std::uint32_t> met_;  // indices in the cloud of the tree's Gaussians
 };
 
 }  // namespace
 
 std::unique_ptr<Tracer> makeSplatBvhTracer(const TracerDesc& desc, const GaussianCloud& cloud) {
-  return std::make_unique<SplatBvhTracer>(desc, build(raySplats(desc, cloud)));
+  return std::make_unique<SplatBvhTracer>(desc, cloud, build(raySplats(desc, cloud)));
 }
 
 std::unique_ptr<Tracer> makeFollowingTracer(const TracerDesc& desc, const GaussianCloud& cloud,
@@ -58,7 +72,7 @@ std::unique_ptr<Tracer> makeFollowingTracer(const TracerDesc& desc, const Gaussi
   std::shared_ptr<const SplatBvh> tree = moved(last.get(), splats);
   last = std::move(tree);
   if (!last) last = build(splats);
-  return std::make_unique<SplatBvhTracer>(desc, last);
+  return std::make_unique<SplatBvhTracer>(desc, cloud, last);
 }
 
 }  // namespace beam

@@ -61,6 +61,15 @@ struct RayRules {
 // SIMD steps (one instruction set chosen at run time; all give the same bits).
 void traceBlocked(const SplatBvh& tree, const RayRules& rules, std::span<const Ray> rays,
                   std::uint8_t* blocked);
+// `met`: indices in the cloud of the Gaussians that the tree was built of.
+struct BlendedRays {
+  const SplatBvh& tree;
+  std::span<const std::uint32_t> met;
+  bool ignore_containing;
+  BlendRules rules;
+};
+std::uint64_t traceAbsorbance(const BlendedRays& rays, const Ray& ray);
+std::optional<SplatHit> traceDrawn(const BlendedRays& rays, const Ray& ray, std::uint64_t draw);
 std::uint64_t traceSum(const SplatBvh& tree, const RayRules& rules, const Ray& ray);
 
 }  // namespace beam

@@ -79,6 +79,12 @@ BEAM_INLINE auto isAhead(const Encounter<F>& e) {
   return e.shift * e.direction2 > dot(e.origin, e.direction);
 }
 
+// Ray parameter of the maximum.
+template <class F>
+BEAM_INLINE F maximumAt(const Encounter<F>& e) {
+  return e.shift - dot(e.origin, e.direction) / e.direction2;
+}
+
 // The cut ellipsoid holds the ray's origin.
 template <class F>
 BEAM_INLINE auto holdsOrigin(const RayTarget<F>& g, const RayLine<F>& ray) {

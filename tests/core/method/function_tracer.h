@@ -14,6 +14,12 @@ class FunctionTracer final : public Tracer {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const override {
     for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = blocked_(rays[i]);
   }
+  float transmittance(const Ray& ray, const BlendRules&) const override {
+    return blocked_(ray) ? 0.0f : 1.0f;
+  }
+  std::optional<SplatHit> drawn(const Ray& ray, std::uint64_t, const BlendRules&) const override {
+    return blocked_(ray) ? std::optional<SplatHit>(SplatHit{}) : std::nullopt;
+  }
   std::uint64_t alphaSum(const Ray& ray) const override { return blocked_(ray) ? 1u << 20 : 0; }
   std::size_t memoryBytes() const override { return 0; }
 

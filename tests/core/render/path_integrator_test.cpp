@@ -26,27 +26,27 @@ struct EvenLight final : PathLights {
 // Wherever a path goes it meets the same wall, face on, and light comes through the walls.
 struct Furnace final : PathSurfaces {
   PathHit wall;
-  std::optional<PathHit> nearest(vec3 o, vec3 d) const override {
+  std::optional<PathHit> nearest(vec3 o, vec3 d, std::uint64_t) const override {
     PathHit h = wall;
     h.position_m = o + d;
     h.normal = -d;
     return h;
   }
-  bool occluded(vec3, vec3) const override { return false; }
+  float transmittance(vec3, vec3) const override { return 1; }
 };
 
 // The plane y = 0 and nothing else; `shade` names the directions that something stands in.
 struct Plane final : PathSurfaces {
   PathHit floor;
   std::function<bool(vec3)> shade = [](vec3) { return false; };
-  std::optional<PathHit> nearest(vec3 o, vec3 d) const override {
+  std::optional<PathHit> nearest(vec3 o, vec3 d, std::uint64_t) const override {
     PathHit h = floor;
     h.distance_m = -o.y / d.y;
     if (!(h.distance_m > 0)) return {};
     h.position_m = o + h.distance_m * d;
     return h;
   }
-  bool occluded(vec3 o, vec3 d) const override { return nearest(o, d).has_value() || shade(d); }
+  float transmittance(vec3 o, vec3 d) const override { return nearest(o, d, 0) || shade(d) ? 0.0f : 1.0f; }
 };
 
 PathHit material(vec3 base_color, float roughness) {

@@ -59,9 +59,11 @@ RenderedPicture drawn(SceneRenderer& renderer, const Camera& camera, const std::
 
 // All that litBall() can show.
 std::vector<ChannelInfo> pictures() {
+  const auto device = makeCpuDevice();
+  const auto renderer = newCpuSceneRenderer(*device);
   std::vector<ChannelInfo> all;
   for (const ChannelInfo& c : channels())
-    if (c.needs != ChannelNeeds::Mesh && lackOf(c, litBall()) == Lack::None) all.push_back(c);
+    if (draws(renderer->abilities(), c) && lackOf(c, litBall()) == Lack::None) all.push_back(c);
   return all;
 }
 

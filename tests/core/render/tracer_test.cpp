@@ -116,6 +116,89 @@ TEST_P(Visibility, SumsWhatTheBruteForceLoopInDoubleSums) {
   EXPECT_LE(differ, 1);
 }
 
+// What blending makes of a ray, in double, front to back.
+struct Blend {
+  double transmittance = 1;
+  std::vector<double> weight;  // of each Gaussian
+};
+
+Blend slowBlend(const GaussianCloud& c, const Ray& ray, const TracerDesc& desc, double reach) {
+  struct Hit {
+    double at, alpha;
+    std::size_t i;
+  };
+  std::vector<Hit> hits;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const dmat3 m = glm::transpose(glm::mat3_cast(dquat(c.rotation[i])));
+    const dvec3 s(c.scale_m[i]), o = m * (dvec3(ray.origin) - dvec3(c.position_m[i])) / s,
+                                 d = m * dvec3(ray.direction) / s;
+    const double cut2 = 2 * std::log(c.opacity[i] / desc.cut_response), at = -glm::dot(o, d) / glm::dot(d, d);
+    const dvec3 across = glm::cross(o, d);
+    const double r2 = glm::dot(across, across) / glm::dot(d, d);
+    if (at <= 0 || at >= reach || r2 >= cut2 || glm::dot(o, o) < cut2) continue;
+    hits.push_back({at, std::min(0.99, c.opacity[i] * std::exp(-0.5 * r2)), i});
+  }
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.at < b.at; });
+  Blend blend{1, std::vector<double>(c.size(), 0.0)};
+  for (const Hit& h : hits) {
+    blend.weight[h.i] = blend.transmittance * h.alpha;
+    blend.transmittance *= 1 - h.alpha;
+  }
+  return blend;
+}
+
+TEST_P(Visibility, LetsThroughWhatBlendingLetsThrough) {
+  const GaussianCloud c = randomCloud(400);
+  const auto tracer = GetParam()({}, c);
+  int differ = 0, dark = 0;
+  for (int i = 0; i < 600; ++i) {
+    const float reach = i % 2 ? kEndless_m : 1.0f;
+    const double expected = slowBlend(c, randomRay(i), {}, reach).transmittance;
+    const double got = tracer->transmittance(randomRay(i), {.reach_m = reach});
+    differ += std::abs(got - (expected < 1.0 / 1024 ? 0 : expected)) > 1e-4;
+    dark += expected < 0.5;
+  }
+  EXPECT_LE(differ, 2);
+  EXPECT_GT(dark, 30);
+}
+
+TEST_P(Visibility, RaysEndInEachGaussianAsOftenAsItsBlendWeight) {
+  const GaussianCloud c = randomCloud(60);
+  const auto tracer = GetParam()({}, c);
+  constexpr int kDraws = 20000;
+  for (int r = 0; r < 8; ++r) {
+    const Ray ray = randomRay(r);
+    const Blend expected = slowBlend(c, ray, {}, 1e9);
+    std::vector<int> ended(c.size());
+    int through = 0;
+    for (int k = 0; k < kDraws; ++k) {
+      const std::optional<SplatHit> hit = tracer->drawn(ray, RandomStream(17, r).bits(k));
+      hit ? ++ended[hit->splat] : ++through;
+    }
+    EXPECT_NEAR(through / double{kDraws}, expected.transmittance, 0.015) << r;
+    for (std::size_t i = 0; i < c.size(); ++i)
+      EXPECT_NEAR(ended[i] / double{kDraws}, expected.weight[i], 0.015) << r << " " << i;
+  }
+}
+
+TEST(Tracers, AllGiveTheSameBlends) {
+  const GaussianCloud c = randomCloud(3000);
+  const auto own = makeSplatBvhTracer({}, c), embree = makeEmbreeTracer({}, c);
+  int hits = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Ray ray = randomRay(i);
+    EXPECT_EQ(own->transmittance(ray), embree->transmittance(ray)) << i;
+    const std::uint64_t chance = RandomStream(5).bits(i);
+    const auto a = own->drawn(ray, chance), b = embree->drawn(ray, chance);
+    ASSERT_EQ(a.has_value(), b.has_value()) << i;
+    if (!a) continue;
+    ++hits;
+    EXPECT_EQ(a->splat, b->splat) << i;
+    EXPECT_EQ(a->distance_m, b->distance_m) << i;
+  }
+  EXPECT_GT(hits, 500);
+}
+
 // The same formulas on every Gaussian, without a tree.
 std::uint64_t sumWithoutTree(const std::vector<RaySplat>& splats, const Ray& ray, bool ignore_containing) {
   const scalar::RayLine<float> line = {{ray.origin.x, ray.origin.y, ray.origin.z},

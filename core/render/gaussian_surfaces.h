@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gaussians as the surfaces of light paths: a ray ends in one of them, drawn by its blend weight (methods
+// 7.5), and light gets past them as much as blending lets through. World axes, metres.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/render/device.h"
+#include "core/render/path_integrator.h"
+#include "core/scene/render_scene.h"
+
+namespace beam {
+
+class GaussianSurfaces final : public PathSurfaces {
+ public:
+  // Of all instances together. Throws Error{Bug} where one has no materials.
+  GaussianSurfaces(const std::vector<RenderInstance>& instances, ComputeDevice& device);
+
+  // Its normal is -normalize(Sigma^-1 d), its base colour that of `direction` (methods 7.5).
+  std::optional<PathHit> nearest(vec3 origin_m, vec3 direction, std::uint64_t chance) const override;
+  float transmittance(vec3 origin_m, vec3 direction) const override;
+
+  // Of a ray that starts outside of everything, where Gaussians seen from behind are blended as well.
+  struct FirstHit {
+    PathHit hit;
+    bool from_behind = false;  // it faces away from the eye
+  };
+  std::optional<FirstHit> first(vec3 eye_m, vec3 direction, std::uint64_t chance) const;
+
+ private:
+  PathHit hitOf(const SplatHit& hit, vec3 origin, vec3 direction) const;
+  BlendRules rules() const { return {.outward = outward_.empty() ? nullptr : outward_.data()}; }
+
+  GaussianCloud cloud_;
+  Materials materials_;
+  std::vector<vec3> outward_;  // empty: not of every instance known
+  std::unique_ptr<Tracer> tracer_;
+};
+
+}  // namespace beam

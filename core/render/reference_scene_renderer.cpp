@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/reference_scene_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/image/filter.h"
+#include "core/math/color.h"
+#include "core/render/cpu_scene_renderer.h"
+#include "core/render/gaussian_surfaces.h"
+#include "core/scene/gbuffer.h"
+
+namespace beam {
+namespace {
+
+constexpr std::size_t kRows = 2;       // of a tile
+constexpr float kLayer_m = 0.03f;      // from the blended surface; beyond it a Gaussian is of another one
+constexpr float kLeastAlbedo = 0.05f;  // of what a denoised signal is divided by
+constexpr int kLevels = 5;
+constexpr int kTries = 16;
+constexpr float kLeastRoughness = 0.04f;
+constexpr float kNoLimit = 1e30f;
+
+// What the rasteriser blends of a view: the first hits.
+constexpr std::array kGuides = {kAlphaChannel, kDepthChannel, kNormalChannel, kBaseColorChannel,
+                                kRoughnessChannel};
+
+using Values = std::shared_ptr<const Planes>;
+
+vec3 triple(const Planes& p, std::size_t i) { return {p.plane(0)[i], p.plane(1)[i], p.plane(2)[i]}; }
+void put(Planes& p, std::size_t i, vec3 v) {
+  for (int c = 0; c < 3; ++c) p.plane(c)[i] = v[c];
+}
+
+struct FirstHits {
+  Camera camera;
+  Values alpha, depth, normal, base_color, roughness;
+
+  vec3 baseColor(std::size_t i) const {
+    return glm::clamp(triple(*base_color, i) / alpha->values[i], 0.0f, 1.0f);
+  }
+};
+
+// Where rays of pixels start and go.
+class CameraRays {
+ public:
+  explicit CameraRays(const Camera& camera)
+      : world_from_camera_(inverse(camera.camera_from_world)), intrinsics_(camera.intrinsics) {}
+  vec3 eye() const { return vec3(world_from_camera_.translation_m); }
+  // Not unit: 1 along the optical axis.
+  vec3 through(int x, int y) const {
+    return vec3(world_from_camera_.rotation * rayOf(intrinsics_, {x + 0.5, y + 0.5}));
+  }
+
+ private:
+  Rigid3 world_from_camera_;
+  Intrinsics intrinsics_;
+};
+
+// Sums of a pixel's paths; of those that ended in a surface.
+struct PixelSum {
+  vec3 direct{0}, indirect{0};
+  // Of the luminance of each, divided by the base colour: sums and sums of squares.
+  float of_direct = 0, of_direct2 = 0, of_indirect = 0, of_indirect2 = 0;
+  float luminance = 0, luminance2 = 0;
+  float depth_m = 0;
+  int hits = 0;
+};
+
+float varianceOfMean(float sum, float squares, int count) {
+  if (count < 2) return 0;
+  const float n = static_cast<float>(count), mean = sum / n;
+  return std::max(0.0f, squares / n - mean * mean) / (n - 1);
+}
+
+class PathPicture {
+ public:
+  PathPicture(FirstHits first, const GaussianSurfaces& surfaces, const PathLights& lights,
+              const ReferenceOptions& options)
+      : first_(std::move(first)),
+        rays_(first_.camera),
+        surfaces_(surfaces),
+        options_(options),
+        paths_(surfaces, lights,
+               {.bounces = options.bounces,
+                .offset_m = options.offset_m,
+                .brightest = kNoLimit,
+                .visible_normals = true,
+                .sure_bounces = 3,
+                .specular = options.specular,
+                .draws = options.draws}),
+        sums_(first_.alpha->values.size()) {}
+
+  // Samples [from, to) of every pixel.
+  void add(int from, int to, const Progress& progress) {
+    const int w = first_.camera.width;
+    parallelFor(static_cast<std::size_t>(first_.camera.height), kRows,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t y = begin; y < end; ++y) {
+                    if (progress.stopRequested()) return;
+                    for (int x = 0; x < w; ++x) {
+                      const std::size_t i = y * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
+                      if (first_.alpha->values[i] >= kVisibleAlpha)
+                        addPixel(x, static_cast<int>(y), i, from, to);
+                    }
+                  }
+                });
+    progress.check();
+  }
+
+  // Linear, x alpha.
+  struct Parts {
+    Planes direct, indirect, variance;
+  };
+  Parts parts() const {
+    const int w = first_.camera.width, h = first_.camera.height;
+    Parts p{Planes(w, h, 3), Planes(w, h, 3), Planes(w, h, 1)};
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const PixelSum& s = sums_[i];
+      if (s.hits == 0) continue;
+      const float share = first_.alpha->values[i] / static_cast<float>(s.hits);
+      put(p.direct, i, share * s.direct);
+      put(p.indirect, i, share * s.indirect);
+      const float alpha = first_.alpha->values[i];
+      p.variance.values[i] = alpha * alpha * varianceOfMean(s.luminance, s.luminance2, s.hits);
+    }
+    return p;
+  }
+
+  // What is smooth is filtered, the texture of the base colour is not.
+  Parts denoised() const {
+    Parts p = parts();
+    const int w = first_.camera.width, h = first_.camera.height;
+    DenoiseGuides guides{Image<vec3>(w, h), Image<float>(w, h), Image<std::uint8_t>(w, h)};
+    std::array<NoisySignal, 2> signals{NoisySignal{Planes(w, h, 3), Planes(w, h, 1)},
+                                       NoisySignal{Planes(w, h, 3), Planes(w, h, 1)}};
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const PixelSum& s = sums_[i];
+      guides.valid.pixels[i] = s.hits > 0;
+      if (!guides.valid.pixels[i]) continue;
+      guides.depth_m.pixels[i] = s.depth_m / static_cast<float>(s.hits);
+      guides.normal.pixels[i] = triple(*first_.normal, i);
+      const vec3 albedo = albedoOf(i);
+      const auto n = static_cast<float>(s.hits);
+      put(signals[0].values, i, s.direct / (n * albedo));
+      put(signals[1].values, i, s.indirect / (n * albedo));
+      signals[0].variance.values[i] = varianceOfMean(s.of_direct, s.of_direct2, s.hits);
+      signals[1].variance.values[i] = varianceOfMean(s.of_indirect, s.of_indirect2, s.hits);
+    }
+    denoiseATrous(signals, guides, kLevels);
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      if (!guides.valid.pixels[i]) continue;
+      const vec3 albedo = first_.alpha->values[i] * albedoOf(i);
+      put(p.direct, i, albedo * triple(signals[0].values, i));
+      put(p.indirect, i, albedo * triple(signals[1].values, i));
+    }
+    return p;
+  }
+
+ private:
+  vec3 albedoOf(std::size_t i) const { return glm::max(first_.baseColor(i), vec3(kLeastAlbedo)); }
+
+  // What the eye sees of the Gaussian that its ray ends in: the blended surface, or another one behind it.
+  PathHit seen(const GaussianSurfaces::FirstHit& first, std::size_t i, vec3 through, float length) const {
+    PathHit hit = first.hit;
+    const float z_m = first_.depth->values[i];
+    if (z_m > 0) {
+      const bool other = std::abs(hit.distance_m - z_m * length) > kLayer_m;
+      if (other && !first.from_behind) return hit;
+      hit.position_m = rays_.eye() + z_m * through;
+    }
+    hit.normal = triple(*first_.normal, i);
+    hit.base_color = first_.baseColor(i);
+    hit.roughness = std::clamp(first_.roughness->values[i] / first_.alpha->values[i], kLeastRoughness, 1.0f);
+    return hit;
+  }
+
+  // A ray through the fringe of a surface mostly ends nowhere; alpha has that already.
+  std::optional<GaussianSurfaces::FirstHit> firstOf(vec3 direction, PathNumbers& numbers) const {
+    for (int i = 0; i < kTries; ++i) {
+      if (auto first = surfaces_.first(rays_.eye(), direction, numbers.bits())) return first;
+    }
+    return {};
+  }
+
+  void addPixel(int x, int y, std::size_t i, int from, int to) {
+    const vec3 through = rays_.through(x, y);
+    const float length = glm::length(through);
+    const vec3 direction = through / length, albedo = albedoOf(i);
+    PixelSum& sum = sums_[i];
+    for (int sample = from; sample < to; ++sample) {
+      PathNumbers numbers(options_.seed, i, sample, options_.samples);
+      const std::optional<GaussianSurfaces::FirstHit> first = firstOf(direction, numbers);
+      if (!first) continue;
+      const PathRadiance l = paths_.trace(seen(*first, i, through, length), -direction, numbers);
+      const vec3 indirect = l.all - l.direct;
+      const float a = luminance(l.direct / albedo), b = luminance(indirect / albedo), c = luminance(l.all);
+      ++sum.hits;
+      sum.depth_m += first->hit.distance_m / length;
+      sum.direct += l.direct;
+      sum.indirect += indirect;
+      sum.of_direct += a, sum.of_direct2 += a * a;
+      sum.of_indirect += b, sum.of_indirect2 += b * b;
+      sum.luminance += c, sum.luminance2 += c * c;
+    }
+  }
+
+  FirstHits first_;
+  CameraRays rays_;
+  const GaussianSurfaces& surfaces_;
+  const ReferenceOptions& options_;
+  PathIntegrator paths_;
+  std::vector<PixelSum> sums_;
+};
+
+bool isLit(const ChannelInfo& channel) { return channel.needs == ChannelNeeds::MaterialsAndLight; }
+
+Values valuesOf(const ChannelInfo& channel, const PathPicture::Parts& parts) {
+  if (channel.id == kDirectChannel) return std::make_shared<const Planes>(parts.direct);
+  if (channel.id == kIndirectChannel) return std::make_shared<const Planes>(parts.indirect);
+  if (channel.id == kVarianceChannel) return std::make_shared<const Planes>(parts.variance);
+  auto all = std::make_shared<Planes>(parts.direct);
+  for (std::size_t k = 0; k < all->values.size(); ++k) all->values[k] += parts.indirect.values[k];
+  return all;
+}
+
+class ReferenceSceneRenderer final : public SceneRenderer {
+ public:
+  ReferenceSceneRenderer(std::shared_ptr<ComputeDevice> device, const ReferenceOptions& options)
+      : device_(std::move(device)), options_(options), unlit_(newCpuSceneRenderer(device_)) {
+    abilities_ = unlit_->abilities();
+    abilities_.id = "reference";
+    abilities_.title = "Reference, path by path";
+    abilities_.settings =
+        fmt::format("{} paths, {} bounces{}, seed {}, offset {}", options.samples, options.bounces,
+                    options.denoise ? ", denoised" : "", options.seed, options.offset_m);
+    for (const char* id : {kDirectChannel, kIndirectChannel, kVarianceChannel})
+      abilities_.channels.emplace_back(id);
+    abilities_.lights = {{"environment", true}};
+    abilities_.refines = true;
+  }
+
+  const RendererAbilities& abilities() const override { return abilities_; }
+
+ private:
+  void doLoad(const RenderScene& scene, const Progress& progress) override {
+    RenderScene dark = scene;  // nothing is prepared of a light that is not shaded by
+    dark.environment = nullptr;
+    unlit_->load(dark, progress);
+    if (!surfaces_ || scene.instances != instances_) surfaces_ = nullptr;
+    instances_ = scene.instances;
+    const EnvironmentLight& light = scene.lighting.environment;
+    if (scene.environment == panorama_ && light == light_) return;
+    sampler_ = nullptr;
+    panorama_ = scene.environment;
+    light_ = light;
+  }
+
+  void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
+              const OnPicture& on_picture) override {
+    std::vector<ChannelInfo> drawn;
+    const bool lit = std::any_of(channels.begin(), channels.end(), isLit);
+    std::copy_if(channels.begin(), channels.end(), std::back_inserter(drawn),
+                 [](const ChannelInfo& c) { return !isLit(c); });
+    if (lit) {
+      for (const char* id : kGuides) drawn.push_back(channelOf(id));
+    }
+    RenderedPicture first;
+    unlit_->draw(camera, drawn, progress, [&](RenderedPicture p) { first = std::move(p); });
+    const auto give = [&](const PathPicture::Parts* parts, int samples, bool final) {
+      RenderedPicture picture;
+      picture.camera = camera;
+      picture.samples = samples;
+      picture.final = final;
+      for (const ChannelInfo& c : channels)
+        picture.channels.push_back(
+            {c.id, isLit(c) ? valuesOf(c, *parts) : channelIn(first, c.id)->values, 0});
+      on_picture(std::move(picture));
+    };
+    if (!lit) return give(nullptr, 1, true);
+    prepare();
+    progress.check();
+    const auto values = [&](const char* id) { return channelIn(first, id)->values; };
+    const PanoramaLights lights(*sampler_);
+    PathPicture picture({camera, values(kAlphaChannel), values(kDepthChannel), values(kNormalChannel),
+                         values(kBaseColorChannel), values(kRoughnessChannel)},
+                        *surfaces_, lights, options_);
+    for (int done = 0; done < options_.samples;) {
+      const int next = std::min(options_.samples, std::max(1, 2 * done));
+      picture.add(done, next, progress);
+      done = next;
+      const bool last = done == options_.samples;
+      const PathPicture::Parts parts = last && options_.denoise ? picture.denoised() : picture.parts();
+      give(&parts, done, last);
+    }
+  }
+
+  // What light needs; only once there is some to follow.
+  void prepare() {
+    if (!surfaces_) surfaces_ = std::make_unique<GaussianSurfaces>(instances_, *device_);
+    if (sampler_) return;
+    Environment turned = *panorama_;
+    turned.yaw_rad += static_cast<float>(light_.rotation_deg * kPi / 180);
+    turned.gain *= static_cast<float>(light_.gain);
+    sampler_ = std::make_unique<EnvironmentSampler>(turned);
+  }
+
+  std::shared_ptr<ComputeDevice> device_;
+  ReferenceOptions options_;
+  std::unique_ptr<SceneRenderer> unlit_;
+  RendererAbilities abilities_;
+  std::vector<RenderInstance> instances_;
+  std::unique_ptr<GaussianSurfaces> surfaces_;  // of instances_; null: not needed yet
+  std::shared_ptr<const Environment> panorama_;
+  EnvironmentLight light_;
+  std::unique_ptr<EnvironmentSampler> sampler_;  // of panorama_ and light_; null: not needed yet
+};
+
+void requireWithin(const char* name, int value, int low, int high) {
+  if (value < low || value > high)
+    throw Error(Error::Kind::Usage, fmt::format("{} expects {} to {}, found {}", name, low, high, value));
+}
+
+}  // namespace
+
+std::unique_ptr<SceneRenderer> newReferenceSceneRenderer(std::shared_ptr<ComputeDevice> device,
+                                                         const ReferenceOptions& options) {
+  requireWithin("paths a pixel (--spp)", options.samples, 1, kMostSamples);
+  requireWithin("bounces", options.bounces, 0, 64);
+  return std::make_unique<ReferenceSceneRenderer>(std::move(device), options);
+}
+
+}  // namespace beam
