@@ -213,6 +213,7 @@ class MainWindow final : public QMainWindow {
   void showValues();
   void showValuesIn(StudioView view);
   void showSplats();
+  Lighting lighting() const;  // as the project says, but for its turn
   void lightImages();
   void showCamera(ViewIndex view);
   void showPlaying();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/stages/relight_settings.h"
 #include "ui/display_panel.h"
 #include "ui/elided_label.h"
 #include "ui/image_page.h"
@@ -64,6 +65,8 @@ void MainWindow::connectModel() {
     if (model_.isOpen()) keepRecent();  // the first save
     showTitle();
     refreshCommands();
+    splat_->setLighting(lighting());
+    lightImages();
   });
   connect(&model_, &ProjectModel::frameChanged, this, [this] {
     splat_->setCapture(model_.capture(), model_.frame());
@@ -278,15 +281,20 @@ void MainWindow::showValuesIn(StudioView view) {
   }
 }
 
+Lighting MainWindow::lighting() const {
+  return model_.isOpen() ? plainLighting(model_.project()) : Lighting{};
+}
+
 // As the splat view is lit and exposed; both scale photographs and renders alike.
 void MainWindow::lightImages() {
   const ViewState& state = splat_->state();
-  images_->setLight({lights_.light(), state.yaw_rad, lights_.reading(), lights_.name()});
+  images_->setLight({lights_.light(), state.yaw_rad, lights_.reading(), lights_.name(), lighting()});
   images_->view().setExposure(state.exposure_stops);
 }
 
 void MainWindow::showSplats() {
   if (!model_.isOpen()) return;
+  splat_->setLighting(lighting());
   const FrameValues& values = model_.values();
   images_->view().setBadge(staleWords(values));  // which shows neither previews nor held frames
   if (previewWins()) {

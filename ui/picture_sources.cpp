@@ -91,6 +91,7 @@ Picture renderedOf(const Render& r, const ChannelInfo& channel) {
   RenderScene scene;
   scene.instances = instancesOf(r.values);
   scene.environment = r.light.light;
+  scene.lighting = r.light.lighting;
   scene.lighting.environment.rotation_deg = glm::degrees(static_cast<double>(r.light.yaw_rad));
   if (scene.instances.empty()) {
     refuse(fmt::format("frame {} is not solved: there is nothing to render. Press Run to compute it.",
@@ -124,6 +125,7 @@ void addRenders(std::vector<PictureSource>& sources, const Shot& shot, const Pro
     if (channel.needs == ChannelNeeds::MaterialsAndLight) {
       made_of.values.push_back(light.light);
       made_of.yaw_rad = light.yaw_rad;
+      made_of.lighting = light.lighting;
       made_of.reading = light.reading;
     }
     sources.push_back({QString::fromStdString("render." + channel.id),

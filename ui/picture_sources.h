@@ -20,6 +20,7 @@ struct PictureIngredients {
   ViewIndex view;
   FrameIndex frame;
   float yaw_rad = 0;
+  Lighting lighting = {};
   bool reading = false;  // a light that is not there yet
   bool operator==(const PictureIngredients&) const = default;
 };
@@ -38,6 +39,7 @@ struct PictureLight {
   float yaw_rad = 0;
   bool reading = false;
   QString name = {};
+  Lighting lighting = {};  // how it falls, but for its turn
   bool operator==(const PictureLight&) const = default;
 };
 

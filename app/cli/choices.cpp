@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "app/cli/commands.h"
 #include "app/cli/flag_facts.h"
 #include "core/pipeline/presets.h"
 #include "core/scene/channel.h"
@@ -25,6 +26,7 @@ Choices choicesOf(const Services& services) {
           {"until", stages},
           {"channels", channelIds()},
           {"format", formats},
+          {"renderer", rendererNames()},
           {"frame-of", {"capture", "world"}},
           {"simd", {"auto", "avx512", "avx2", "scalar"}},
           {"device", {"cpu"}}};

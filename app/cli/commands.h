@@ -6,6 +6,7 @@
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "app/cli/console.h"
 #include "app/services.h"
@@ -37,6 +38,8 @@ void addDeviceFlags(CLI::App& command, DeviceChoice& choice);
 
 // "beam 0.1.0"; verbose: also what it computes with.
 std::string versionWords(const Services& services, bool verbose);
+
+const std::vector<std::string>& rendererNames();  // of --renderer, the usual one first
 
 void addCheckCommand(CLI::App& app, CommandContext& context);
 void addCleanCommand(CLI::App& app, CommandContext& context);

@@ -5,12 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <variant>
 
 #include "app/cli/commands.h"
+#include "app/cli/run_flags.h"
 #include "core/base/count_text.h"
 #include "core/base/error.h"
 #include "core/base/word_list.h"
 #include "core/render/cpu_scene_renderer.h"
+#include "core/render/reference_scene_renderer.h"
 #include "core/scene/channel.h"
 #include "core/work/export_frames.h"
 #include "core/work/render_frames.h"
@@ -25,6 +28,10 @@ constexpr const char* kSolvedFramesHelp =
 struct RenderFlags {
   std::string project, channels = "rgb", cameras, frames = "all", environment;
   std::string frame_of = "capture", out;
+  std::vector<std::string> set;
+  std::string renderer = "cpu";
+  int samples = ReferenceOptions{}.samples;
+  bool no_denoise = false, tells_samples = false;
   bool names_cameras = false, layers = false, skip_existing = false, force = false, strict = false;
   DeviceChoice device;
 };
@@ -55,12 +62,27 @@ std::vector<std::string> channelsIn(const std::string& list) {
 
 // A panorama that nothing is lit by was meant for something: said before the work.
 void requireUse(const std::string& environment, const std::vector<std::string>& channels) {
-  if (environment.empty() || std::find(channels.begin(), channels.end(), kRelightChannel) != channels.end())
-    return;
+  const bool lit = std::any_of(channels.begin(), channels.end(), [](const std::string& id) {
+    return channelOf(id).needs == ChannelNeeds::MaterialsAndLight;
+  });
+  if (environment.empty() || lit) return;
   throw Error(Error::Kind::Usage,
               fmt::format("--environment lights the channel {0} alone, and --channels are {1}: add {0} to "
                           "them, or leave --environment out",
                           kRelightChannel, fmt::join(channels, ", ")));
+}
+
+std::unique_ptr<SceneRenderer> rendererOf(const RenderFlags& flags, const Project& project,
+                                          std::shared_ptr<ComputeDevice> device) {
+  if (flags.renderer == rendererNames()[0]) {
+    if (flags.no_denoise || flags.tells_samples)
+      throw Error(Error::Kind::Usage, "--spp and --no-denoise are of --renderer reference alone");
+    return newCpuSceneRenderer(std::move(device));
+  }
+  const auto offset_m = std::get<double>(project.value("materials.offset_m"));
+  return newReferenceSceneRenderer(
+      std::move(device),
+      {.samples = flags.samples, .denoise = !flags.no_denoise, .offset_m = static_cast<float>(offset_m)});
 }
 
 std::string writtenText(const RenderFramesOutcome& outcome, const RenderFlags& flags) {
@@ -75,7 +97,8 @@ std::string writtenText(const RenderFramesOutcome& outcome, const RenderFlags& f
 }
 
 int runRender(const RenderFlags& flags, CommandContext& context) {
-  const Project project = Project::open(flags.project, context.services.pipeline);
+  Project project = Project::open(flags.project, context.services.pipeline);
+  for (const std::string& assignment : flags.set) setForPictures(project, assignment);
   RenderFramesRequest request{
       .project = project,
       .channels = channelsIn(flags.channels),
@@ -92,9 +115,9 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
   context.interrupted = flags.skip_existing ? "interrupted; the same command goes on"
                                             : "interrupted; the same command with --skip-existing goes on";
-  const auto device = makeDevice(flags.device);
+  const std::unique_ptr<SceneRenderer> renderer = rendererOf(flags, project, makeDevice(flags.device));
   Progress progress(context.stop, context.console.listener());
-  const RenderFramesOutcome outcome = renderFrames(request, *newCpuSceneRenderer(*device), progress);
+  const RenderFramesOutcome outcome = renderFrames(request, *renderer, progress);
   context.console.endProgress();
   context.console.print(writtenText(outcome, flags));
   tellInterpolated(outcome.interpolated, context.console);
@@ -131,6 +154,11 @@ std::string formatHelp() {
 
 }  // namespace
 
+const std::vector<std::string>& rendererNames() {
+  static const std::vector<std::string> kNames = {"cpu", "reference"};
+  return kNames;
+}
+
 void addRenderCommand(CLI::App& app, CommandContext& context) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command =
@@ -153,6 +181,20 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
           "--frame-of", flags->frame_of,
           "Axes and unit of normals, depth and meshes: the capture's, or the world's (+Y up, metres)")
       ->type_name("NAME");
+  command
+      ->add_option("--renderer", flags->renderer,
+                   "cpu: in real time; reference: light followed path by path, which that is judged by, with "
+                   "the channels direct, indirect and variance")
+      ->type_name("NAME");
+  command->add_option("--spp", flags->samples, "Paths a pixel of the reference")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostSamples));
+  command->add_flag("--no-denoise", flags->no_denoise, "The reference as its paths found it");
+  command
+      ->add_option("--set", flags->set,
+                   "For these pictures alone: how light falls, e.g. --set relight.environment_shadows=ao")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   command->add_flag("--layers", flags->layers,
                     "All channels of a camera and frame as layers of one linear EXR file, "
                     "OUT/layers/CAMERA/FRAME.exr, which holds the channels of this call alone; a mesh "
@@ -163,10 +205,12 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
-  command->callback([flags, &context, cameras = command->get_option("--cameras")] {
-    flags->names_cameras = cameras->count() > 0;
-    context.action = [flags, &context] { return runRender(*flags, context); };
-  });
+  command->callback(
+      [flags, &context, cameras = command->get_option("--cameras"), samples = command->get_option("--spp")] {
+        flags->names_cameras = cameras->count() > 0;
+        flags->tells_samples = samples->count() > 0;
+        context.action = [flags, &context] { return runRender(*flags, context); };
+      });
 }
 
 void addExportCommand(CLI::App& app, CommandContext& context) {

@@ -51,6 +51,9 @@ const Examples& table() {
        {{"beam render Take.beam --out pictures", "colour of every solved frame in the test cameras"},
         {"beam render Take.beam --channels relight --environment studio.exr --out pictures",
          "under another light, into pictures/relight_studio"},
+        {"beam render Take.beam --channels relight,direct,indirect --renderer reference --spp 16 "
+         "--environment studio.exr --out reference",
+         "the same light followed path by path, and what of it came straight or by another surface"},
         {"beam render Take.beam --channels rgb,base_color,normal,depth --layers --out layers",
          "all of it as layers of one EXR a camera and frame"},
         {"beam render Take.beam --cameras 'test,cam0*' --out pictures --skip-existing",

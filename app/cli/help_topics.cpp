@@ -37,7 +37,8 @@ std::string contentText(const ChannelInfo& channel) {
     case Quantity::Length:
       return "along the optical axis, in the unit of --frame-of (world: metres)";
     case Quantity::Scalar:
-      return channel.unit.empty() ? "from 0 to 1" : "in the axes and the unit of --frame-of";
+      if (channel.needs == ChannelNeeds::Mesh) return "in the axes and the unit of --frame-of";
+      return channel.unit.empty() ? "from 0 to 1" : channel.unit;
   }
   return {};
 }
@@ -56,6 +57,8 @@ std::string channelText(const ChannelInfo& channel) {
       fmt::format("{}. {}: {}{}.", channel.title, formText(channel), contentText(channel), edgeText(channel));
   if (needsMaterials(channel)) text += " Needs Materials.";
   if (channel.needs == ChannelNeeds::MaterialsAndLight) text += " Needs --environment FILE.";
+  if (channel.needs == ChannelNeeds::MaterialsAndLight && channel.id != kRelightChannel)
+    text += " Of --renderer reference.";
   return text;
 }
 

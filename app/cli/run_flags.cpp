@@ -37,6 +37,22 @@ void setFromText(Project& project, const std::string& assignment) {
   project.set(key, parseFieldValue(assignment.substr(key.size() + 1), project.value(key)));
 }
 
+}  // namespace
+
+void setForPictures(Project& project, const std::string& assignment) {
+  setFromText(project, assignment);
+  const std::string key = keyOf(assignment);
+  for (const Field& field : project.fields()) {
+    if (field.info.name != key || field.info.effect == Effect::Pictures) continue;
+    throw Error(
+        Error::Kind::Usage,
+        fmt::format("--set {}: it changes what is computed, not how it is drawn; beam run --set takes it",
+                    assignment));
+  }
+}
+
+namespace {
+
 void applySettings(Project& project, const ProjectFlags& flags) {
   if (!flags.preset.empty()) project.setPreset(flags.preset);
   if (flags.reset) {

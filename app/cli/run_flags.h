@@ -43,6 +43,9 @@ void addRunFlags(CLI::App& command, RunFlags& flags);
 // list.
 std::vector<std::string> parseHoldOut(const std::string& text);
 
+// "key=value" of a setting that changes pictures alone (Effect::Pictures); Error{Usage} for any other.
+void setForPictures(Project& project, const std::string& assignment);
+
 // Throws Error{Usage} for unknown presets and settings, Error{Data} for a panorama that is not there or
 // cannot be read.
 void applyFlags(Project& project, const ProjectFlags& flags);

@@ -9,6 +9,7 @@ void registerBuiltinStages(StageRegistry& registry) {
   registry.add(makeTrackStage);
   registry.add(makeSurfaceStage);
   registry.add(makeMaterialsStage);
+  registry.add(makeRelightStage);
 }
 
 }  // namespace beam

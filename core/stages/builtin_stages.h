@@ -13,5 +13,6 @@ std::unique_ptr<Stage> makeLightStage();
 std::unique_ptr<Stage> makeTrackStage();
 std::unique_ptr<Stage> makeSurfaceStage();
 std::unique_ptr<Stage> makeMaterialsStage();
+std::unique_ptr<Stage> makeRelightStage();
 
 }  // namespace beam

@@ -60,6 +60,7 @@ std::string digestText(const PictureSource& source) {
   if (source.camera) text += textOf(*source.camera) + "\n";
   text += fmt::format("{}\n", fmt::join(source.channels, "\n"));
   for (const Digest& panorama : source.panoramas) text += panorama.hex() + "\n";
+  if (!source.shadows.empty()) text += source.shadows + "\n";
   return digestOf(text).hex();
 }
 

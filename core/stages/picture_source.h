@@ -35,6 +35,7 @@ struct PictureSource {
   const Camera* camera = nullptr;      // null: of a mesh
   std::vector<std::string> channels;   // of the file, in their order
   std::vector<Digest> panoramas = {};  // files whose light is in it, in that order
+  std::string shadows = {};            // EnvironmentLight::shadows of those
 };
 
 // 32 digits; also of the program's version. Empty where the stamp is none: such a file is always made anew.

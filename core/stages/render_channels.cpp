@@ -40,6 +40,13 @@ std::string relitName(const fs::path& environment) {
   return std::string(kRelightChannel) + "_" + environment.stem().string();
 }
 
+bool needsLight(const ChannelInfo& channel) { return channel.needs == ChannelNeeds::MaterialsAndLight; }
+
+bool isLit(const RenderRequest& request) {
+  return std::any_of(request.channels.begin(), request.channels.end(),
+                     [](const std::string& id) { return needsLight(channelOf(id)); });
+}
+
 // Of every channel that is a picture, in order of the request: channel and name; relit ones once a panorama.
 std::vector<DrawnChannel> picturesOf(const RenderRequest& request) {
   std::vector<DrawnChannel> pictures;
@@ -97,12 +104,12 @@ class ChannelWriter {
         std::find(request.channels.begin(), request.channels.end(), kMeshChannel) != request.channels.end();
     if (const std::string lost = roundingWarning(frame_from_world_); mesh_ && !lost.empty())
       logWarning("{}", lost);
-    const auto relit = std::find(request.channels.begin(), request.channels.end(), kRelightChannel) !=
-                       request.channels.end();
-    for (std::size_t e = 0; relit && e < request.environments.size(); ++e) {
+    for (std::size_t e = 0; isLit(request) && e < request.environments.size(); ++e) {
       const fs::path& file = request.environments[e];
-      lights_[relitName(file)] = {std::make_shared<const Environment>(makeEnvironment(readRadiance(file))),
-                                  request.written_by.empty() ? Digest{} : digestOfFile(file)};
+      const Light light{std::make_shared<const Environment>(makeEnvironment(readRadiance(file))),
+                        request.written_by.empty() ? Digest{} : digestOfFile(file)};
+      lights_[relitName(file)] = light;
+      for (const char* part : {kDirectChannel, kIndirectChannel, kVarianceChannel}) lights_[part] = light;
     }
   }
 
@@ -118,14 +125,25 @@ class ChannelWriter {
     if (result->interpolated) logInfo("frame {} is interpolated", name);
     RenderScene scene;
     scene.instances = {instanceOf(result, sequence_.renderMode())};
+    scene.lighting = request_.lighting;
     requireWhatIsNeeded(scene, name);
+    if (!lights_.empty() && lacksVisibility(scene)) without_visibility_.push_back(name);
     for (std::size_t v = 0; v < missing.size(); ++v) {
       if (!missing[v].empty()) pictures(scene, request_.views[v], name, missing[v], progress);
       progress.step();
     }
   }
 
-  RenderedFiles done() const { return done_; }
+  // Also says what of the wanted light could not be had.
+  RenderedFiles done() const {
+    if (!without_visibility_.empty()) {
+      logWarning(
+          "frames {}: no visibility was baked, so that ambient occlusion alone keeps the panorama's light "
+          "off; run Materials to bake it",
+          fmt::join(without_visibility_, ", "));
+    }
+    return done_;
+  }
 
  private:
   // Of each view.
@@ -187,13 +205,16 @@ class ChannelWriter {
   std::string sourceOf(const PictureFile& file, const View& view, const std::string& name) const {
     PictureSource source = sourceOf(name);
     source.renderer = renderer_.abilities().id;
+    if (!renderer_.abilities().settings.empty()) source.renderer += ", " + renderer_.abilities().settings;
     source.mode = sequence_.renderMode();
     source.camera = &view.camera;
     source.channels = {file.folder};
     for (const DrawnChannel& d : file.channels) {
       source.channels.push_back(d.name);
-      if (const auto light = lights_.find(d.name); light != lights_.end())
+      if (const auto light = lights_.find(d.name); light != lights_.end()) {
         source.panoramas.push_back(light->second.digest);
+        source.shadows = request_.lighting.environment.shadows;
+      }
     }
     return digestText(source);
   }
@@ -291,7 +312,7 @@ class ChannelWriter {
     for (const PictureFile* file : files) drawn.push_back(file->channels);
     std::vector<DrawnChannel*> unlit, lit;
     for (std::vector<DrawnChannel>& channels : drawn) {
-      for (DrawnChannel& d : channels) (d.channel.id == kRelightChannel ? lit : unlit).push_back(&d);
+      for (DrawnChannel& d : channels) (needsLight(d.channel) ? lit : unlit).push_back(&d);
     }
     const auto writeDone = [&] {
       for (std::size_t f = 0; f < files.size(); ++f) {
@@ -304,9 +325,14 @@ class ChannelWriter {
     };
     if (!unlit.empty()) draw(scene, view, unlit, progress);
     writeDone();
-    for (DrawnChannel* const& d : lit) {
-      scene.environment = lights_.at(d->name).environment;
-      draw(scene, view, {&d, 1}, progress);
+    // What one light gives is drawn together.
+    while (!lit.empty()) {
+      scene.environment = lights_.at(lit[0]->name).environment;
+      const auto others = std::stable_partition(lit.begin(), lit.end(), [&](const DrawnChannel* d) {
+        return lights_.at(d->name).environment == scene.environment;
+      });
+      draw(scene, view, {lit.begin(), others}, progress);
+      lit.erase(lit.begin(), others);
       writeDone();
     }
   }
@@ -322,20 +348,23 @@ class ChannelWriter {
   const std::vector<PictureFile> files_;
   Similarity3 frame_from_world_;
   bool mesh_ = false;
-  std::map<std::string, Light> lights_;  // by the name of what they light
-  Digest stamp_;                         // of the frame at work
+  std::map<std::string, Light> lights_;          // by the name of what they light
+  Digest stamp_;                                 // of the frame at work
+  std::vector<std::string> without_visibility_;  // frames that were relit so, though it was wanted
   RenderedFiles done_;
 };
 
 void requirePanoramas(const RenderRequest& request) {
-  const bool relit = std::any_of(request.channels.begin(), request.channels.end(), [](const std::string& id) {
-    return channelOf(id).needs == ChannelNeeds::MaterialsAndLight;
-  });
-  if (relit && request.environments.empty()) {
-    throw Error(Error::Kind::Usage,
-                fmt::format("the channel {} needs a panorama: give --environment FILE", kRelightChannel));
+  for (const std::string& id : request.channels) {
+    if (!needsLight(channelOf(id))) continue;
+    if (request.environments.empty()) {
+      throw Error(Error::Kind::Usage,
+                  fmt::format("the channel {} needs a panorama: give --environment FILE", id));
+    }
+    if (id != kRelightChannel && request.environments.size() > 1)
+      throw Error(Error::Kind::Usage, fmt::format("the channel {} is of one panorama at a time", id));
   }
-  if (!relit) return;
+  if (!isLit(request)) return;
   std::map<std::string, fs::path> named;
   for (const fs::path& file : request.environments) {
     const auto [other, fresh] = named.try_emplace(relitName(file), file);
@@ -372,10 +401,11 @@ void requireDrawable(const RenderRequest& request, const RendererAbilities& abil
 void requireOneLight(const RenderRequest& request, std::span<const fs::path> files) {
   const std::set<fs::path> replaced(files.begin(), files.end());
   for (const DrawnChannel& d : picturesOf(request)) {
-    if (d.channel.id != kRelightChannel) continue;
-    const auto panorama =
-        std::find_if(request.environments.begin(), request.environments.end(),
-                     [&](const fs::path& environment) { return relitName(environment) == d.name; });
+    if (!needsLight(d.channel)) continue;
+    const auto panorama = std::find_if(
+        request.environments.begin(), request.environments.end(), [&](const fs::path& environment) {
+          return d.channel.id != kRelightChannel || relitName(environment) == d.name;
+        });
     const std::string now = digestOfFile(*panorama).hex();
     const fs::path folder = request.out / (request.layers ? kLayersFolder : d.name);
     for (const fs::directory_entry& entry : entriesBelow(folder)) {

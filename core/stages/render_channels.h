@@ -14,6 +14,7 @@
 #include "core/render/scene_renderer.h"
 #include "core/scene/capture.h"
 #include "core/scene/gaussian_sequence.h"
+#include "core/scene/lighting.h"
 
 namespace beam {
 
@@ -22,6 +23,7 @@ struct RenderRequest {
   std::vector<View> views;
   std::vector<FrameIndex> frames;
   std::vector<std::filesystem::path> environments;  // for "relight": a folder relight_<stem> each
+  Lighting lighting = {};                           // that their light comes in
   bool world_frame = false;  // normals and meshes in world axes instead of the capture's
   bool layers = false;       // one file a camera and frame (picture_files.h); a mesh stays its own file
   // What is there, whole, and was made by `written_by` from what it would be made from now is left as it is.

@@ -17,6 +17,7 @@
 #include "core/scene/frame_views.h"
 #include "core/stages/picture_files.h"
 #include "core/stages/project_sequence.h"
+#include "core/stages/relight_settings.h"
 #include "core/stages/render_channels.h"
 #include "core/work/evaluate_over_time.h"
 #include "core/work/ground_truth.h"
@@ -125,8 +126,9 @@ EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, const LastSolv
   requireFits(truth, views);
   last.tell();
   const ScratchFolder scratch;
-  const RenderRequest pictures =
+  RenderRequest pictures =
       picturesFor(*sequence, truth, std::move(frames), std::move(views), scratch.path(), progress);
+  pictures.lighting = plainLighting(request.project);
   EvaluateOutcome e;
   {
     Progress part = progress.part(0.5, "render");
@@ -138,7 +140,7 @@ EvaluateOutcome scoreAgainstTruth(const EvaluateRequest& request, const LastSolv
   }
   Progress part = progress.part(0.2, "compare frames");
   scoreMotion(*sequence, pictures.views, pictures.frames, &truth, device, part, e.each);
-  e.origin.results = resultsOf(*sequence, pictures.frames);
+  e.origin.results = resultsOf(*sequence, pictures.frames, pictures.lighting);
   return e;
 }
 
@@ -176,7 +178,7 @@ EvaluateOutcome scoreHeldOut(const EvaluateRequest& request, const LastSolved& l
   addMean("rgb_held_out", all, e.table);
   Progress part = progress.part(0.2, "compare frames");
   scoreMotion(*sequence, {}, frames, nullptr, device, part, e.each);
-  e.origin.results = resultsOf(*sequence, frames);
+  e.origin.results = resultsOf(*sequence, frames, plainLighting(request.project));
   return e;
 }
 

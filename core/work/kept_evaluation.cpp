@@ -35,11 +35,14 @@ ScoreTable tableIn(const Json& json) {
 
 }  // namespace
 
-ScoredResults resultsOf(const GaussianSequence& sequence, const std::vector<FrameIndex>& frames) {
+ScoredResults resultsOf(const GaussianSequence& sequence, const std::vector<FrameIndex>& frames,
+                        const Lighting& lighting) {
+  const std::string& shadows = lighting.environment.shadows;
+  const std::string lit = shadows == Lighting{}.environment.shadows ? std::string() : " " + shadows;
   ScoredResults results;
   for (const FrameIndex frame : frames) {
     const Digest stamp = sequence.stamp(frame).value_or(Digest{});
-    if (stamp != Digest{}) results[nameOf(sequence, frame)] = stamp.hex();
+    if (stamp != Digest{}) results[nameOf(sequence, frame)] = stamp.hex() + lit;
   }
   return results;
 }

@@ -8,13 +8,15 @@
 
 #include "core/pipeline/project.h"
 #include "core/scene/gaussian_sequence.h"
+#include "core/scene/lighting.h"
 #include "core/work/scores.h"
 
 namespace beam {
 
 // GaussianSequence::stamp of each of the frames, by name, as text: another where a frame was solved anew or
-// further.
-ScoredResults resultsOf(const GaussianSequence& sequence, const std::vector<FrameIndex>& frames);
+// further, or where it is relit in another way than is usual.
+ScoredResults resultsOf(const GaussianSequence& sequence, const std::vector<FrameIndex>& frames,
+                        const Lighting& lighting);
 
 struct KeptEvaluation {
   ScoreTable table;                      // means; empty: there is none

@@ -5,6 +5,7 @@
 #include "core/pipeline/output_target.h"
 #include "core/scene/channel.h"
 #include "core/stages/project_sequence.h"
+#include "core/stages/relight_settings.h"
 #include "core/stages/render_channels.h"
 #include "core/work/last_solved.h"
 #include "core/work/selection.h"
@@ -37,6 +38,7 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   pictures.views = selectViews(request.cameras, project.capture());
   pictures.frames = selectSolvedFrames(request.frames, *sequence, progress);
   pictures.environments = request.environments;
+  pictures.lighting = plainLighting(request.project);
   pictures.world_frame = request.world_frame;
   pictures.layers = request.layers;
   pictures.skip_existing = request.skip_existing;

@@ -10,6 +10,7 @@
 #include "core/pipeline/output_target.h"
 #include "core/pipeline/version.h"
 #include "core/stages/project_sequence.h"
+#include "core/stages/relight_settings.h"
 #include "core/work/evaluate_over_time.h"
 #include "core/work/kept_evaluation.h"
 #include "core/work/last_solved.h"
@@ -98,7 +99,7 @@ void addEvaluation(const Project& project, const GaussianSequence& sequence, boo
   std::vector<FrameIndex> frames;
   for (const FrameQuality& q : page.history.frames) frames.push_back(q.frame);
   KeptEvaluation kept = keptEvaluation(project);
-  const ScoredResults shown = resultsOf(sequence, frames);
+  const ScoredResults shown = resultsOf(sequence, frames, plainLighting(project));
   page.evaluation_note = otherResultsText(kept, shown);
   const bool current = page.evaluation_note.empty();
   for (const auto& [frame, scores] : kept.frames) {

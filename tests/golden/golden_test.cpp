@@ -40,6 +40,11 @@ class Rendered {
     beam({"render", project, "--channels", "rgb,relight,base_color,ao,normal,alpha", "--environment",
           capture + "/gt/environments/studio.exr", "--cameras", kCamera, "--frames", "all", "--out",
           pictures_.string()});
+    const fs::path ao = folder_ / "ao";
+    beam({"render", project, "--channels", "relight", "--set", "relight.environment_shadows=ao",
+          "--environment", capture + "/gt/environments/studio.exr", "--cameras", kCamera, "--out",
+          ao.string()});
+    fs::rename(ao / "relight_studio", pictures_ / "relight_ao");
   }
   void beam(const Words& words) const {
     const Said said = Running(folder_.path(), words).wait();
@@ -107,7 +112,8 @@ TEST_P(Golden, LooksAsItDid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Pictures, Golden,
-                         ::testing::Values("rgb", "relight_studio", "base_color", "ao", "normal"),
+                         ::testing::Values("rgb", "relight_studio", "relight_ao", "base_color", "ao",
+                                           "normal"),
                          [](const auto& p) { return std::string(p.param); });
 
 }  // namespace

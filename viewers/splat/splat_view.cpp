@@ -106,6 +106,12 @@ void SplatView::setLight(std::shared_ptr<const Environment> light, const QString
   if (!same) changed(Pace::Resting);
 }
 
+void SplatView::setLighting(const Lighting& lighting) {
+  if (lighting == scene_.lighting) return;
+  scene_.lighting = lighting;
+  changed(Pace::Resting);
+}
+
 void SplatView::resetState() {
   state_ = {};
   keep_photo_opacity_ = false;

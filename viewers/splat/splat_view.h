@@ -34,6 +34,8 @@ class SplatView final : public PictureCanvas {
   void setCapture(std::shared_ptr<const CaptureSet> capture, FrameIndex frame);  // null: none
   // `reading`: the light of this name is on its way; until it is there the one before stays.
   void setLight(std::shared_ptr<const Environment> light, const QString& name, bool reading = false);
+  // How it falls; its turn is the view's own (setYaw).
+  void setLighting(const Lighting& lighting);
 
   const ViewState& state() const { return state_; }
   void setState(const ViewState& state);
