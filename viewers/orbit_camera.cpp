@@ -98,16 +98,4 @@ OrbitCamera orbitOf(const Camera& camera, float distance_m) {
   return o;
 }
 
-Camera fittedTo(const Camera& camera, int width_px, int height_px) {
-  const double scale =
-      std::min(static_cast<double>(width_px) / camera.width, static_cast<double>(height_px) / camera.height);
-  Camera c = camera;
-  c.width = width_px;
-  c.height = height_px;
-  c.intrinsics = {camera.intrinsics.fx * scale, camera.intrinsics.fy * scale,
-                  camera.intrinsics.cx * scale + 0.5 * (width_px - scale * camera.width),
-                  camera.intrinsics.cy * scale + 0.5 * (height_px - scale * camera.height)};
-  return c;
-}
-
 }  // namespace beam

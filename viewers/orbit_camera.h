@@ -42,8 +42,4 @@ struct OrbitCamera {
 // The orbit that sees what `camera` sees, around a point `distance_m` in front of it; roll is dropped.
 OrbitCamera orbitOf(const Camera& camera, float distance_m);
 
-// `camera` as seen in a window of another shape: its whole picture is inside, centred, the rest of the window
-// looks past its border.
-Camera fittedTo(const Camera& camera, int width_px, int height_px);
-
 }  // namespace beam

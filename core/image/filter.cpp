@@ -173,11 +173,15 @@ float evenDepth(const SurfaceGuides& s, int x, int y, int radius) {
   return weight > 0 ? sum / weight : z;
 }
 
-void denoiseATrous(std::span<NoisySignal> signals, const DenoiseGuides& guides, int levels) {
+void denoiseATrous(std::span<NoisySignal> signals, const DenoiseGuides& guides, int levels,
+                   const Progress& progress) {
   const Scene scene = prepare(guides);
   for (NoisySignal& signal : signals) {
     signal.variance = smoothed(signal.variance, scene, 2);
-    for (int level = 0; level < levels; ++level) signal = filtered(signal, scene, 1 << level);
+    for (int level = 0; level < levels; ++level) {
+      progress.check();
+      signal = filtered(signal, scene, 1 << level);
+    }
   }
 }
 

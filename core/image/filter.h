@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/base/progress.h"
 #include "core/image/image.h"
 
 namespace beam {
@@ -39,7 +40,8 @@ struct NoisySignal {
 
 // Edge-avoiding a-trous wavelet filter (Dammertz 2010 with SVGF's weights; methods 5.9): 5x5 B3-spline taps,
 // distance 2^level. All signals share the guides. A constant stays as it is; nothing leaks across normals,
-// depth or mask.
-void denoiseATrous(std::span<NoisySignal> signals, const DenoiseGuides& guides, int levels);
+// depth or mask. Throws Cancelled when the progress is stopped.
+void denoiseATrous(std::span<NoisySignal> signals, const DenoiseGuides& guides, int levels,
+                   const Progress& progress = Progress{});
 
 }  // namespace beam

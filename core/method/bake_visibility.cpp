@@ -127,7 +127,8 @@ SeenSurface seenSurface(const GaussianCloud& cloud, std::span<const Camera> came
   progress.expect(static_cast<std::int64_t>(cameras.size()));
   for (const Camera& whole : cameras) {
     const double pixels = static_cast<double>(whole.width) * whole.height;
-    const Camera camera = scaledDown(whole, std::max(1, static_cast<int>(std::sqrt(pixels / kVotePixels))));
+    const Camera camera =
+        scaledDown(whole, std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / kVotePixels)))));
     Rasterizer& rasterizer =
         rasterizers.of({.width = camera.width, .height = camera.height, .color = false, .geometry = true});
     rasterizer.forward(buffers, camera, 0, vec3(0), images);

@@ -57,7 +57,9 @@ class CpuSceneRenderer final : public SceneRenderer {
     for (const ChannelInfo& c : channels())
       if (c.id == kRelightChannel || drawnChannels().contains(c.id)) abilities_.channels.push_back(c.id);
     abilities_.attributes = true;
-    abilities_.lights = {{"environment", false}};
+    abilities_.lights = {{"environment", true}};
+    abilities_.occlusion = true;
+    abilities_.without_visibility = "ambient occlusion alone keeps the panorama's light off";
   }
 
   const RendererAbilities& abilities() const override { return abilities_; }

@@ -2,6 +2,7 @@
 #include "core/render/path_integrator.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/math/brdf.h"
 #include "core/math/sampling.h"
@@ -9,19 +10,38 @@
 namespace beam {
 namespace {
 
+// Of [0, count): a Feistel network over the next even number of bits, walked until it is back inside.
+std::uint64_t permuted(std::uint64_t i, std::uint64_t count, std::uint64_t key) {
+  const int half = (std::bit_width(count - 1) + 1) / 2;
+  const std::uint64_t mask = (1ull << half) - 1;
+  do {
+    std::uint64_t left = i >> half, right = i & mask;
+    for (std::uint64_t round = 0; round < 4; ++round) {
+      const std::uint64_t mixed = left ^ (mixBits(key + 4 * right + round) & mask);
+      left = right;
+      right = mixed;
+    }
+    i = left << half | right;
+  } while (i >= count);
+  return i;
+}
+
 bool isLit(vec3 c) { return c.x + c.y + c.z > 0; }
 
 }  // namespace
 
-PathNumbers::PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples)
-    : random_(seed, pixel), sample_(sample), strata_(std::max(1, samples)) {}
+PathNumbers::PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples, Strata strata)
+    : random_(seed, pixel), sample_(sample), strata_(std::max(1, samples)), order_(strata) {}
 
 vec2 PathNumbers::next() {
   const std::uint64_t d = dimension_++;
   const std::uint64_t shift = random_.bits(1000003 + d) % strata_;
   const float u = random_.uniform(2 * (d * 65537 + sample_)),
               v = random_.uniform(2 * (d * 65537 + sample_) + 1);
-  const auto stratum = static_cast<float>((sample_ * (d % 2 ? 7 : 1) + shift) % strata_);
+  const std::uint64_t place = order_ == Strata::Permuted
+                                  ? permuted(sample_, strata_, random_.bits(2000003 + d))
+                                  : (sample_ * (d % 2 ? 7 : 1) + shift) % strata_;
+  const auto stratum = static_cast<float>(place);
   return {(stratum + u) / static_cast<float>(strata_), v};
 }
 
@@ -79,7 +99,7 @@ PathRadiance PathIntegrator::trace(PathHit h, vec3 wo, PathNumbers& numbers) con
     if (bounce == settings_.bounces) break;
     const vec3 wi = drawnBySurface(h, n, wo, numbers);
     const float cosine = glm::dot(n, wi);
-    if (cosine <= 1e-4f) break;
+    if (!(cosine > 1e-4f)) break;
     const Scattered f = scatter(h, n, wi, wo);
     throughput *= f.value * (settings_.visible_normals ? 1 / f.pdf : kPi / cosine);
     if (settings_.sure_bounces > 0 && bounce >= settings_.sure_bounces) {

@@ -64,10 +64,14 @@ class PanoramaLights final : public PathLights {
 };
 
 // Uniform pairs in [0, 1)^2 of one path, a dimension each call. Over the `samples` of a pixel every dimension
-// is stratified along its first axis, permuted for each pixel.
+// is stratified along its first axis. Shifted: each by a number of its own, which ties dimensions together: a
+// mean over pixels is right, that of one pixel is not, however many samples. Permuted: each in an order of
+// its own, and any first samples are spread over all strata.
+enum class Strata { Shifted, Permuted };
 class PathNumbers {
  public:
-  PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples);
+  PathNumbers(std::uint64_t seed, std::uint64_t pixel, int sample, int samples,
+              Strata strata = Strata::Shifted);
   vec2 next();
   // 64 bits that no pair is made of, others at each call.
   std::uint64_t bits() { return random_.bits(~(sample_ * 65537 + chances_++)); }
@@ -75,6 +79,7 @@ class PathNumbers {
  private:
   RandomStream random_;
   std::uint64_t sample_, strata_, dimension_ = 0, chances_ = 0;
+  Strata order_;
 };
 
 // Which directions tell of light from the lights; either alone gives the same mean.

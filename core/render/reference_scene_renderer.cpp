@@ -24,6 +24,7 @@ constexpr float kLayer_m = 0.03f;      // from the blended surface; beyond it a 
 constexpr float kLeastAlbedo = 0.05f;  // of what a denoised signal is divided by
 constexpr int kLevels = 5;
 constexpr int kTries = 16;
+constexpr int kMostOfAPass = 16;  // paths a pixel between two pictures
 constexpr float kLeastRoughness = 0.04f;
 constexpr float kNoLimit = 1e30f;
 
@@ -73,8 +74,9 @@ struct PixelSum {
   int hits = 0;
 };
 
+// Of one sample nothing is known: as much as it is itself.
 float varianceOfMean(float sum, float squares, int count) {
-  if (count < 2) return 0;
+  if (count < 2) return squares;
   const float n = static_cast<float>(count), mean = sum / n;
   return std::max(0.0f, squares / n - mean * mean) / (n - 1);
 }
@@ -103,11 +105,11 @@ class PathPicture {
     parallelFor(static_cast<std::size_t>(first_.camera.height), kRows,
                 [&](std::size_t begin, std::size_t end) {
                   for (std::size_t y = begin; y < end; ++y) {
-                    if (progress.stopRequested()) return;
                     for (int x = 0; x < w; ++x) {
                       const std::size_t i = y * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
-                      if (first_.alpha->values[i] >= kVisibleAlpha)
-                        addPixel(x, static_cast<int>(y), i, from, to);
+                      if (first_.alpha->values[i] < kVisibleAlpha) continue;
+                      if (progress.stopRequested()) return;
+                      addPixel(x, static_cast<int>(y), i, from, to);
                     }
                   }
                 });
@@ -134,7 +136,7 @@ class PathPicture {
   }
 
   // What is smooth is filtered, the texture of the base colour is not.
-  Parts denoised() const {
+  Parts denoised(const Progress& progress) const {
     Parts p = parts();
     const int w = first_.camera.width, h = first_.camera.height;
     DenoiseGuides guides{Image<vec3>(w, h), Image<float>(w, h), Image<std::uint8_t>(w, h)};
@@ -153,7 +155,7 @@ class PathPicture {
       signals[0].variance.values[i] = varianceOfMean(s.of_direct, s.of_direct2, s.hits);
       signals[1].variance.values[i] = varianceOfMean(s.of_indirect, s.of_indirect2, s.hits);
     }
-    denoiseATrous(signals, guides, kLevels);
+    denoiseATrous(signals, guides, kLevels, progress);
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       if (!guides.valid.pixels[i]) continue;
       const vec3 albedo = first_.alpha->values[i] * albedoOf(i);
@@ -195,10 +197,11 @@ class PathPicture {
     const vec3 direction = through / length, albedo = albedoOf(i);
     PixelSum& sum = sums_[i];
     for (int sample = from; sample < to; ++sample) {
-      PathNumbers numbers(options_.seed, i, sample, options_.samples);
+      PathNumbers numbers(options_.seed, i, sample, options_.samples, Strata::Permuted);
       const std::optional<GaussianSurfaces::FirstHit> first = firstOf(direction, numbers);
       if (!first) continue;
       const PathRadiance l = paths_.trace(seen(*first, i, through, length), -direction, numbers);
+      if (!std::isfinite(l.all.x + l.all.y + l.all.z)) continue;
       const vec3 indirect = l.all - l.direct;
       const float a = luminance(l.direct / albedo), b = luminance(indirect / albedo), c = luminance(l.all);
       ++sum.hits;
@@ -242,7 +245,8 @@ class ReferenceSceneRenderer final : public SceneRenderer {
                     options.denoise ? ", denoised" : "", options.seed, options.offset_m);
     for (const char* id : {kDirectChannel, kIndirectChannel, kVarianceChannel})
       abilities_.channels.emplace_back(id);
-    abilities_.lights = {{"environment", true}};
+    abilities_.occlusion = false;
+    abilities_.without_visibility = "surfaces shadow themselves, for their outer sides are unknown";
     abilities_.refines = true;
   }
 
@@ -256,7 +260,7 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     if (!surfaces_ || scene.instances != instances_) surfaces_ = nullptr;
     instances_ = scene.instances;
     const EnvironmentLight& light = scene.lighting.environment;
-    if (scene.environment == panorama_ && light == light_) return;
+    if (!scene.environment || (scene.environment == panorama_ && light == light_)) return;
     sampler_ = nullptr;
     panorama_ = scene.environment;
     light_ = light;
@@ -284,31 +288,33 @@ class ReferenceSceneRenderer final : public SceneRenderer {
       on_picture(std::move(picture));
     };
     if (!lit) return give(nullptr, 1, true);
-    prepare();
-    progress.check();
+    prepare(progress);
     const auto values = [&](const char* id) { return channelIn(first, id)->values; };
     const PanoramaLights lights(*sampler_);
     PathPicture picture({camera, values(kAlphaChannel), values(kDepthChannel), values(kNormalChannel),
                          values(kBaseColorChannel), values(kRoughnessChannel)},
                         *surfaces_, lights, options_);
+    progress.expect(options_.samples, "paths a pixel");
     for (int done = 0; done < options_.samples;) {
-      const int next = std::min(options_.samples, std::max(1, 2 * done));
+      const int next = std::min({options_.samples, std::max(1, 2 * done), done + kMostOfAPass});
       picture.add(done, next, progress);
+      progress.step(next - done);
       done = next;
       const bool last = done == options_.samples;
-      const PathPicture::Parts parts = last && options_.denoise ? picture.denoised() : picture.parts();
+      const PathPicture::Parts parts =
+          last && options_.denoise ? picture.denoised(progress) : picture.parts();
       give(&parts, done, last);
     }
   }
 
   // What light needs; only once there is some to follow.
-  void prepare() {
+  void prepare(const Progress& progress) {
     if (!surfaces_) surfaces_ = std::make_unique<GaussianSurfaces>(instances_, *device_);
+    progress.check();
     if (sampler_) return;
-    Environment turned = *panorama_;
-    turned.yaw_rad += static_cast<float>(light_.rotation_deg * kPi / 180);
-    turned.gain *= static_cast<float>(light_.gain);
-    sampler_ = std::make_unique<EnvironmentSampler>(turned);
+    sampler_ = std::make_unique<EnvironmentSampler>(
+        *panorama_, static_cast<float>(light_.rotation_deg * kPi / 180), static_cast<float>(light_.gain));
+    progress.check();
   }
 
   std::shared_ptr<ComputeDevice> device_;
@@ -316,8 +322,8 @@ class ReferenceSceneRenderer final : public SceneRenderer {
   std::unique_ptr<SceneRenderer> unlit_;
   RendererAbilities abilities_;
   std::vector<RenderInstance> instances_;
-  std::unique_ptr<GaussianSurfaces> surfaces_;  // of instances_; null: not needed yet
-  std::shared_ptr<const Environment> panorama_;
+  std::unique_ptr<GaussianSurfaces> surfaces_;   // of instances_; null: not needed yet
+  std::shared_ptr<const Environment> panorama_;  // the last one that was loaded
   EnvironmentLight light_;
   std::unique_ptr<EnvironmentSampler> sampler_;  // of panorama_ and light_; null: not needed yet
 };

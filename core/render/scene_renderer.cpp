@@ -57,9 +57,9 @@ const RenderedChannel* channelIn(const RenderedPicture& picture, std::string_vie
   return found == picture.channels.end() ? nullptr : &*found;
 }
 
-bool lacksVisibility(const RenderScene& scene) {
+bool lacksVisibility(const RenderScene& scene, const RendererAbilities& abilities) {
   const EnvironmentLight& light = scene.lighting.environment;
-  if (!light.enabled || light.shadows == kOcclusionAlone) return false;
+  if (!light.enabled || (abilities.occlusion && light.shadows == kOcclusionAlone)) return false;
   return std::any_of(scene.instances.begin(), scene.instances.end(), [](const RenderInstance& i) {
     return i.materials && !attributeNamed(*i.attributes, kVisibilityName);
   });

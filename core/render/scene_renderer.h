@@ -34,6 +34,8 @@ struct RendererAbilities {
   bool meshes = false, ground = false;
   // An OpenGL context must be current, the same one in load, draw and at its end.
   bool needs_context = false;
+  bool occlusion = false;               // EnvironmentLight::shadows may tell it to shade by ambient occlusion
+  std::string without_visibility = {};  // what of light is worse where it was not baked, in words
   std::string settings = {};  // what else its pictures depend on, in words; the same give the same pictures
   bool refines = false;       // a draw gives picture after picture, each better than the one before
 };
@@ -86,9 +88,9 @@ class SceneRenderer {
 
 using SceneRendererFactory = std::function<std::unique_ptr<SceneRenderer>()>;
 
-// Whether the panorama's light was to come past the visibility of Gaussians and there are some without, so
-// that ambient occlusion alone keeps it off.
-bool lacksVisibility(const RenderScene& scene);
+// Whether the panorama's light was to come past the visibility of Gaussians and there are some without
+// (RendererAbilities::without_visibility).
+bool lacksVisibility(const RenderScene& scene, const RendererAbilities& abilities);
 
 // What of the scene a renderer of these abilities leaves out, and what the scene itself misses.
 std::vector<std::string> leftOut(const RenderScene& scene, const RendererAbilities& abilities);

@@ -34,7 +34,8 @@ struct SplatHit {
 inline constexpr float kMostAlpha = 0.99f;  // of one Gaussian where they are blended (methods 4.3)
 inline constexpr float kEndless_m = std::numeric_limits<float>::infinity();
 
-// What of a ray counts where Gaussians are blended along it: what lies ahead and nearer.
+// What of a ray counts where Gaussians are blended along it: what lies ahead and nearer, as TracerDesc says
+// of those that hold the origin.
 struct BlendRules {
   float reach_m = kEndless_m;
   // Of the cloud's Gaussians, unit; null: unknown. With them those do not count that the ray leaves from

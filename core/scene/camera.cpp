@@ -2,6 +2,7 @@
 #include "core/scene/camera.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 
@@ -39,6 +40,18 @@ Camera scaledDown(const Camera& camera, int factor) {
                sy = static_cast<double>(c.height) / camera.height;
   c.intrinsics = {camera.intrinsics.fx * sx, camera.intrinsics.fy * sy, camera.intrinsics.cx * sx,
                   camera.intrinsics.cy * sy};
+  return c;
+}
+
+Camera fittedTo(const Camera& camera, int width_px, int height_px) {
+  const double scale =
+      std::min(static_cast<double>(width_px) / camera.width, static_cast<double>(height_px) / camera.height);
+  Camera c = camera;
+  c.width = width_px;
+  c.height = height_px;
+  c.intrinsics = {camera.intrinsics.fx * scale, camera.intrinsics.fy * scale,
+                  camera.intrinsics.cx * scale + 0.5 * (width_px - scale * camera.width),
+                  camera.intrinsics.cy * scale + 0.5 * (height_px - scale * camera.height)};
   return c;
 }
 

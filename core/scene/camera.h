@@ -43,5 +43,8 @@ inline dvec3 rayOf(const Intrinsics& k, const dvec2& p) {
 
 // The camera whose pictures are `factor` times smaller a side (sizes rounded down).
 Camera scaledDown(const Camera& camera, int factor);
+// The camera whose pictures have this size and show all that `camera` sees, as large as there is room; what
+// is over of another shape shows more beside it.
+Camera fittedTo(const Camera& camera, int width_px, int height_px);
 
 }  // namespace beam

@@ -108,9 +108,12 @@ vec3 brightestDirection(const Environment& e) {
   return turned(texelDirection(r.width, r.height, i % r.width, i / r.width), e.yaw_rad);
 }
 
-EnvironmentSampler::EnvironmentSampler(const Environment& e)
-    : width_(e.radiance.width), height_(e.radiance.height), yaw_rad_(e.yaw_rad), radiance_(e.radiance) {
-  for (vec3& p : radiance_.pixels) p *= e.gain;
+EnvironmentSampler::EnvironmentSampler(const Environment& e, float yaw_rad, float gain)
+    : width_(e.radiance.width),
+      height_(e.radiance.height),
+      yaw_rad_(e.yaw_rad + yaw_rad),
+      radiance_(e.radiance) {
+  for (vec3& p : radiance_.pixels) p *= e.gain * gain;
   row_cdf_.assign(height_ + 1, 0);
   texel_cdf_.assign(static_cast<std::size_t>(height_) * (width_ + 1), 0);
   pdf_.assign(radiance_.pixels.size(), 0);

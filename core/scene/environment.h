@@ -43,7 +43,8 @@ vec3 brightestDirection(const Environment& environment);
 // exact).
 class EnvironmentSampler {
  public:
-  explicit EnvironmentSampler(const Environment& environment);
+  // `yaw_rad` and `gain` come on top of its own.
+  explicit EnvironmentSampler(const Environment& environment, float yaw_rad = 0, float gain = 1);
   struct Sample {
     vec3 direction;
     vec3 radiance;  // of the texel, constant over it

@@ -17,6 +17,9 @@ namespace beam {
 
 inline constexpr const char* kSourceNote = "source";
 
+// The renderer and its way of light, of a picture that a panorama lights, in words.
+inline constexpr const char* kLitByNote = "lit_by";
+
 // What lights a picture or its layers, as a note: "relight_studio" and the digest of the panorama's file,
 // each, with commas.
 inline constexpr const char* kPanoramaNote = "panorama";
@@ -35,7 +38,7 @@ struct PictureSource {
   const Camera* camera = nullptr;      // null: of a mesh
   std::vector<std::string> channels;   // of the file, in their order
   std::vector<Digest> panoramas = {};  // files whose light is in it, in that order
-  std::string shadows = {};            // EnvironmentLight::shadows of those
+  std::string shadows = {};            // kOcclusionAlone where that is what they are drawn by
 };
 
 // 32 digits; also of the program's version. Empty where the stamp is none: such a file is always made anew.

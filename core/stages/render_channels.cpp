@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/word_list.h"
 #include "core/io/file.h"
 #include "core/io/file_notes.h"
 #include "core/io/image_file.h"
@@ -18,6 +19,7 @@
 #include "core/pipeline/file_digest.h"
 #include "core/scene/channel.h"
 #include "core/scene/environment.h"
+#include "core/scene/frame_list.h"
 #include "core/scene/transform.h"
 #include "core/stages/picture_files.h"
 #include "core/stages/picture_source.h"
@@ -45,6 +47,15 @@ bool needsLight(const ChannelInfo& channel) { return channel.needs == ChannelNee
 bool isLit(const RenderRequest& request) {
   return std::any_of(request.channels.begin(), request.channels.end(),
                      [](const std::string& id) { return needsLight(channelOf(id)); });
+}
+
+// Which way of light is in a picture, in words.
+std::string litBy(const RenderRequest& request, const RendererAbilities& abilities) {
+  std::string text = abilities.id;
+  if (!abilities.settings.empty()) text += ", " + abilities.settings;
+  if (abilities.occlusion && request.lighting.environment.shadows == kOcclusionAlone)
+    text += ", ambient occlusion alone";
+  return text;
 }
 
 // Of every channel that is a picture, in order of the request: channel and name; relit ones once a panorama.
@@ -119,33 +130,55 @@ class ChannelWriter {
     if (mesh_) mesh(frame, name, progress);
     const std::vector<std::vector<const PictureFile*>> missing = missingFiles(name, progress);
     const bool none = std::all_of(missing.begin(), missing.end(), [](const auto& m) { return m.empty(); });
-    if (none && (files_.empty() || request_.skip_existing))
-      return progress.step(static_cast<std::int64_t>(request_.views.size()));
+    if (none && (files_.empty() || request_.skip_existing)) return pass(request_.views.size(), progress);
     const std::shared_ptr<const GaussianFrame> result = solvedFrame(sequence_, frame);
     if (result->interpolated) logInfo("frame {} is interpolated", name);
     RenderScene scene;
     scene.instances = {instanceOf(result, sequence_.renderMode())};
     scene.lighting = request_.lighting;
     requireWhatIsNeeded(scene, name);
-    if (!lights_.empty() && lacksVisibility(scene)) without_visibility_.push_back(name);
+    if (!lights_.empty() && lacksVisibility(scene, renderer_.abilities())) {
+      without_visibility_.push_back(name);
+      places_without_.push_back(frame.value);
+    }
     for (std::size_t v = 0; v < missing.size(); ++v) {
-      if (!missing[v].empty()) pictures(scene, request_.views[v], name, missing[v], progress);
-      progress.step();
+      const View& view = request_.views[v];
+      if (!renderer_.abilities().refines) {
+        if (!missing[v].empty()) pictures(scene, view, name, missing[v], progress);
+        progress.step();
+        continue;
+      }
+      Progress part = progress.part(share(1), fmt::format("frame {}, camera {}", name, view.name));
+      if (!missing[v].empty()) pictures(scene, view, name, missing[v], part);
     }
   }
 
   // Also says what of the wanted light could not be had.
   RenderedFiles done() const {
     if (!without_visibility_.empty()) {
-      logWarning(
-          "frames {}: no visibility was baked, so that ambient occlusion alone keeps the panorama's light "
-          "off; run Materials to bake it",
-          fmt::join(without_visibility_, ", "));
+      logWarning("frames {}: no visibility was baked: {}; run Materials to bake it",
+                 shortList(frameRanges(without_visibility_, places_without_)),
+                 renderer_.abilities().without_visibility);
     }
     return done_;
   }
 
  private:
+  bool byOcclusion() const {
+    return renderer_.abilities().occlusion && request_.lighting.environment.shadows == kOcclusionAlone;
+  }
+
+  // Of all pictures of all frames. One of a renderer that refines takes long and is told of path by path.
+  double share(std::size_t views) const {
+    return static_cast<double>(views) / static_cast<double>(request_.views.size() * request_.frames.size());
+  }
+  void pass(std::size_t views, Progress& progress) const {
+    if (renderer_.abilities().refines)
+      progress.part(share(views), {});
+    else
+      progress.step(static_cast<std::int64_t>(views));
+  }
+
   // Of each view.
   std::vector<std::vector<const PictureFile*>> missingFiles(const std::string& name,
                                                             const Progress& progress) {
@@ -213,7 +246,7 @@ class ChannelWriter {
       source.channels.push_back(d.name);
       if (const auto light = lights_.find(d.name); light != lights_.end()) {
         source.panoramas.push_back(light->second.digest);
-        source.shadows = request_.lighting.environment.shadows;
+        if (byOcclusion()) source.shadows = kOcclusionAlone;
       }
     }
     return digestText(source);
@@ -238,14 +271,19 @@ class ChannelWriter {
     };
     if (any([](const ChannelInfo& c) { return c.quantity != Quantity::Color; }))
       notes.emplace_back("axes", axes());
-    if (any([](const ChannelInfo& c) { return !c.unit.empty(); }))
+    if (any([](const ChannelInfo& c) { return c.quantity == Quantity::Length; }))
       notes.emplace_back("unit", lengthUnit(frame_from_world_));
+    else if (const std::string& unit = file.channels[0].channel.unit; !unit.empty())
+      notes.emplace_back("unit", unit);
     PanoramaDigests panoramas;
     for (const DrawnChannel& d : file.channels) {
       if (const auto light = lights_.find(d.name); light != lights_.end())
         panoramas[d.name] = light->second.digest.hex();
     }
-    if (!panoramas.empty()) notes.emplace_back(kPanoramaNote, panoramaText(panoramas));
+    if (!panoramas.empty()) {
+      notes.emplace_back(kPanoramaNote, panoramaText(panoramas));
+      notes.emplace_back(kLitByNote, litBy(request_, renderer_.abilities()));
+    }
     if (!request_.layers) {
       const ChannelInfo& channel = file.channels[0].channel;
       notes.emplace_back("color_state", colorStateOf(channel));
@@ -351,6 +389,7 @@ class ChannelWriter {
   std::map<std::string, Light> lights_;          // by the name of what they light
   Digest stamp_;                                 // of the frame at work
   std::vector<std::string> without_visibility_;  // frames that were relit so, though it was wanted
+  std::vector<int> places_without_;              // of these in the capture
   RenderedFiles done_;
 };
 
@@ -398,7 +437,8 @@ void requireDrawable(const RenderRequest& request, const RendererAbilities& abil
   }
 }
 
-void requireOneLight(const RenderRequest& request, std::span<const fs::path> files) {
+void requireOneLight(const RenderRequest& request, const RendererAbilities& abilities,
+                     std::span<const fs::path> files) {
   const std::set<fs::path> replaced(files.begin(), files.end());
   for (const DrawnChannel& d : picturesOf(request)) {
     if (!needsLight(d.channel)) continue;
@@ -410,10 +450,18 @@ void requireOneLight(const RenderRequest& request, std::span<const fs::path> fil
     const fs::path folder = request.out / (request.layers ? kLayersFolder : d.name);
     for (const fs::directory_entry& entry : entriesBelow(folder)) {
       if (replaced.contains(entry.path().lexically_relative(request.out))) continue;
-      const PanoramaDigests lit = panoramasOf(noteIn(notesIn(entry.path()), kPanoramaNote));
+      const FileNotes notes = notesIn(entry.path());
+      const PanoramaDigests lit = panoramasOf(noteIn(notes, kPanoramaNote));
       const auto other = lit.find(d.name);
       if (other == lit.end()) continue;
-      if (other->second == now) break;  // as are those beside it
+      if (other->second == now) {
+        const std::string by = noteIn(notes, kLitByNote), here = litBy(request, abilities);
+        if (by.empty() || by == here) break;  // as are those beside it
+        throw Error(Error::Kind::Usage,
+                    fmt::format("\"{}\" was lit by the renderer {}, and this would be by {}: choose another "
+                                "--out, or give --force",
+                                entry.path().string(), by, here));
+      }
       throw Error(Error::Kind::Usage,
                   fmt::format("\"{}\" was lit by another panorama than \"{}\", and both would be {}: choose "
                               "another --out, rename the panorama, or give --force",
@@ -441,7 +489,8 @@ std::vector<fs::path> channelFiles(const GaussianSequence& sequence, const Rende
 RenderedFiles renderChannels(const GaussianSequence& sequence, const RenderRequest& request,
                              SceneRenderer& renderer, Progress& progress) {
   requireDrawable(request, renderer.abilities());
-  progress.expect(static_cast<std::int64_t>(request.frames.size() * request.views.size()));
+  if (!renderer.abilities().refines)
+    progress.expect(static_cast<std::int64_t>(request.frames.size() * request.views.size()));
   ChannelWriter writer(sequence, request, renderer);
   for (const FrameIndex f : request.frames) writer.frame(f, progress);
   return writer.done();

@@ -48,9 +48,10 @@ struct RenderedFiles {
 void requireDrawable(const RenderRequest& request, const RendererAbilities& abilities);
 
 // Throws Error{Usage} where a folder that this would write relit pictures into holds others, not among
-// `files`, that another panorama of the same file name lights: one folder would hold two lights. Of what
-// notes say.
-void requireOneLight(const RenderRequest& request, std::span<const std::filesystem::path> files);
+// `files`, that another panorama of the same file name lights, or in another way: one folder would hold two
+// lights. Of what notes say.
+void requireOneLight(const RenderRequest& request, const RendererAbilities& abilities,
+                     std::span<const std::filesystem::path> files);
 
 // Throws what requireDrawable does, and Error{Data} when a frame is not solved as far as a channel needs. The
 // renderer draws no textures.

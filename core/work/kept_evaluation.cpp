@@ -37,8 +37,8 @@ ScoreTable tableIn(const Json& json) {
 
 ScoredResults resultsOf(const GaussianSequence& sequence, const std::vector<FrameIndex>& frames,
                         const Lighting& lighting) {
-  const std::string& shadows = lighting.environment.shadows;
-  const std::string lit = shadows == Lighting{}.environment.shadows ? std::string() : " " + shadows;
+  const bool usual = lighting.environment.shadows != kOcclusionAlone;
+  const std::string lit = usual ? std::string() : fmt::format(" {}", kOcclusionAlone);
   ScoredResults results;
   for (const FrameIndex frame : frames) {
     const Digest stamp = sequence.stamp(frame).value_or(Digest{});

@@ -36,6 +36,9 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   RenderRequest pictures;
   pictures.channels = request.channels;
   pictures.views = selectViews(request.cameras, project.capture());
+  if (request.size) {
+    for (View& view : pictures.views) view.camera = fittedTo(view.camera, request.size->x, request.size->y);
+  }
   pictures.frames = selectSolvedFrames(request.frames, *sequence, progress);
   pictures.environments = request.environments;
   pictures.lighting = plainLighting(request.project);
@@ -47,7 +50,7 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   requireDrawable(pictures, renderer.abilities());
   const std::vector<std::filesystem::path> files = channelFiles(*sequence, pictures);
   requireFolderTarget(request.out, files, {kCommand, request.force, inputFolders(project)});
-  if (!request.force) requireOneLight(pictures, files);
+  if (!request.force) requireOneLight(pictures, renderer.abilities(), files);
   last.tell();
   const RenderedFiles done = renderChannels(*sequence, pictures, renderer, progress);
   return {pictures.views.size(), pictures.frames.size(), interpolatedOf(*sequence, pictures.frames),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct RenderFramesRequest {
   std::string cameras = "test";                 // of selectViews
   std::string frames = "all";  // of selectSolvedFrames; those between the ones of a scout too
   std::vector<std::filesystem::path> environments;  // for "relight"
+  std::optional<ivec2> size = {};  // of the pictures, in pixels; none: that of each camera (fittedTo)
   bool world_frame = false;    // normals, depth and meshes in world axes and metres instead of the capture's
   bool layers = false;         // of RenderRequest
   bool skip_existing = false;  // likewise

@@ -70,8 +70,8 @@ void SplatRenderer::render(const SplatRequest& r, Progress& progress, const OnPi
   const bool dark = r.channel.needs == ChannelNeeds::MaterialsAndLight && frame.lack != Lack::None;
   frame.channel = dark ? channelOf(kRgbChannel) : r.channel;
   frame.left_out = renderer_->load(r.scene, progress);
-  if (frame.channel.id == kRelightChannel && lacksVisibility(r.scene))
-    frame.left_out.emplace_back("no visibility was baked: shaded by ambient occlusion alone");
+  if (frame.channel.id == kRelightChannel && lacksVisibility(r.scene, abilities()))
+    frame.left_out.push_back("no visibility was baked: " + abilities().without_visibility);
   const std::optional<Limits> fixed = fixedLimits(r, frame.channel);
   frame.limits = fixed.value_or(Limits{});
   const bool seen = r.sky && r.scene.environment;

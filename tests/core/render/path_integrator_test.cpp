@@ -181,5 +181,40 @@ TEST(PathNumbers, FillEveryStratumOnceInEveryDimension) {
   }
 }
 
+TEST(PathNumbers, PermutedFillEveryStratumOnceAndTieNoDimensions) {
+  for (const int samples : {1, 7, 24, 128}) {
+    for (int dimension = 0; dimension < 5; ++dimension) {
+      std::vector<int> hits(static_cast<std::size_t>(samples));
+      for (int i = 0; i < samples; ++i) {
+        PathNumbers numbers(3, 11, i, samples, Strata::Permuted);
+        vec2 u(0);
+        for (int d = 0; d <= dimension; ++d) u = numbers.next();
+        ++hits[static_cast<std::size_t>(u.x * static_cast<float>(samples))];
+      }
+      EXPECT_EQ(hits, std::vector<int>(static_cast<std::size_t>(samples), 1)) << samples << " " << dimension;
+    }
+  }
+  // Of one pixel: how often two dimensions add up to less than 1.
+  constexpr int kSamples = 4096;
+  for (std::uint64_t pixel = 0; pixel < 8; ++pixel) {
+    int below = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      PathNumbers numbers(3, pixel, i, kSamples, Strata::Permuted);
+      const float a = numbers.next().x;
+      numbers.next();
+      below += a + numbers.next().x < 1;
+    }
+    EXPECT_NEAR(below / double{kSamples}, 0.5, 0.03) << pixel;
+  }
+}
+
+TEST(PathNumbers, TheFirstPermutedSamplesAreSpreadOverAll) {
+  int low = 0;
+  for (std::uint64_t pixel = 0; pixel < 200; ++pixel) {
+    for (int i = 0; i < 8; ++i) low += PathNumbers(1, pixel, i, 128, Strata::Permuted).next().x < 0.5f;
+  }
+  EXPECT_NEAR(low / 1600.0, 0.5, 0.05);
+}
+
 }  // namespace
 }  // namespace beam

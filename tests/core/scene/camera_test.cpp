@@ -127,5 +127,23 @@ TEST(CaptureAxes, ArePermutationsOfTheCapturesOwn) {
   EXPECT_EQ(toText(UpAxis::PlusY) + toText(UpAxis::PlusZ) + toText(UpAxis::MinusY), "+Y+Z-Y");
 }
 
+TEST(FittedTo, ShowsAllThatTheCameraSawInTheMiddleOfThePicture) {
+  const Camera camera = oddCamera();
+  for (const ivec2& size : {ivec2(1200, 960), ivec2(300, 240), ivec2(1920, 1080), ivec2(400, 900)}) {
+    const Camera c = fittedTo(camera, size.x, size.y);
+    EXPECT_EQ(ivec2(c.width, c.height), size);
+    EXPECT_EQ(c.camera_from_world, camera.camera_from_world);
+    EXPECT_DOUBLE_EQ(c.intrinsics.fx / c.intrinsics.fy, camera.intrinsics.fx / camera.intrinsics.fy);
+    // Corners of the old picture lie as far from the new one's edges on both sides, and on one pair of them.
+    const dvec2 low = project(c.intrinsics, rayOf(camera.intrinsics, {0, 0})),
+                high = project(c.intrinsics, rayOf(camera.intrinsics, {camera.width, camera.height}));
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_NEAR(low[k], size[k] - high[k], 1e-9);
+      EXPECT_GE(low[k], -1e-9);
+    }
+    EXPECT_NEAR(std::min(low.x, low.y), 0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace beam
