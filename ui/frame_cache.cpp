@@ -43,6 +43,9 @@ std::uint64_t bytesOf(const FrameValues& v) {
     bytes += bytesIn(v.materials->roughness) + bytesIn(v.materials->base_color.coefficients) +
              bytesIn(v.materials->ambient_occlusion.coefficients);
   }
+  if (v.attributes) {
+    for (const Attribute& a : *v.attributes) bytes += bytesIn(a.values);
+  }
   if (v.mesh) bytes += bytesIn(v.mesh->vertices) + bytesIn(v.mesh->triangles);
   return bytes;
 }

@@ -4,16 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "app/cli/answer.h"
 #include "app/cli/commands.h"
+#include "app/cli/picture_size.h"
 #include "app/cli/run_flags.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -56,26 +55,10 @@ struct SampleFlags {
   DeviceChoice device;
 };
 
-// The whole of it; 0: it is no number.
-int sideOf(std::string_view digits) {
-  int side = 0;
-  const char* last = digits.data() + digits.size();
-  const auto [end, failed] = std::from_chars(digits.data(), last, side);
-  return failed == std::errc() && end == last ? side : 0;
-}
-
 void applySize(std::string_view size, SampleOptions& options) {
-  constexpr int kLeast = 16, kMost = 8192;
-  const std::size_t x = size.find('x');
-  const int width = sideOf(size.substr(0, x));
-  const int height = x == std::string_view::npos ? 0 : sideOf(size.substr(x + 1));
-  if (std::min(width, height) < kLeast || std::max(width, height) > kMost) {
-    throw Error(
-        Error::Kind::Usage,
-        fmt::format("--size expects WIDTHxHEIGHT of {} to {} pixels, found \"{}\"", kLeast, kMost, size));
-  }
-  options.width = width;
-  options.height = height;
+  const ivec2 pixels = parsePictureSize(size);
+  options.width = pixels.x;
+  options.height = pixels.y;
 }
 
 }  // namespace
@@ -110,7 +93,7 @@ void addSampleCommand(CLI::App& app, CommandContext& context) {
                    "Number of training cameras; two test cameras join them")
       ->type_name("N")
       ->check(CLI::Range(2, 200));
-  command->add_option("--size", flags->size, "Size of the pictures, in pixels of 16 to 8192")
+  command->add_option("--size", flags->size, fmt::format("Size of the pictures, {}", kPictureSizeHelp))
       ->type_name("WxH");
   command->add_option("--samples", flags->options.samples, "Light paths a pixel")
       ->type_name("N")

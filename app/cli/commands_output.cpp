@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "app/cli/commands.h"
+#include "app/cli/picture_size.h"
 #include "app/cli/run_flags.h"
 #include "core/base/count_text.h"
 #include "core/base/error.h"
@@ -29,7 +30,7 @@ struct RenderFlags {
   std::string project, channels = "rgb", cameras, frames = "all", environment;
   std::string frame_of = "capture", out;
   std::vector<std::string> set;
-  std::string renderer = "cpu";
+  std::string renderer = "cpu", size;
   int samples = ReferenceOptions{}.samples;
   bool no_denoise = false, tells_samples = false;
   bool names_cameras = false, layers = false, skip_existing = false, force = false, strict = false;
@@ -66,10 +67,11 @@ void requireUse(const std::string& environment, const std::vector<std::string>& 
     return channelOf(id).needs == ChannelNeeds::MaterialsAndLight;
   });
   if (environment.empty() || lit) return;
-  throw Error(Error::Kind::Usage,
-              fmt::format("--environment lights the channel {0} alone, and --channels are {1}: add {0} to "
-                          "them, or leave --environment out",
-                          kRelightChannel, fmt::join(channels, ", ")));
+  throw Error(
+      Error::Kind::Usage,
+      fmt::format("--environment lights the channel {0} and its parts, and --channels are {1}: add {0} to "
+                  "them, or leave --environment out",
+                  kRelightChannel, fmt::join(channels, ", ")));
 }
 
 std::unique_ptr<SceneRenderer> rendererOf(const RenderFlags& flags, const Project& project,
@@ -112,6 +114,7 @@ int runRender(const RenderFlags& flags, CommandContext& context) {
       .force = flags.force,
       .strict = flags.strict};
   requireUse(flags.environment, request.channels);
+  if (!flags.size.empty()) request.size = parsePictureSize(flags.size);
   if (!flags.environment.empty()) request.environments.emplace_back(flags.environment);
   context.interrupted = flags.skip_existing ? "interrupted; the same command goes on"
                                             : "interrupted; the same command with --skip-existing goes on";
@@ -186,6 +189,13 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
                    "cpu: in real time; reference: light followed path by path, which that is judged by, with "
                    "the channels direct, indirect and variance")
       ->type_name("NAME");
+  command
+      ->add_option("--size", flags->size,
+                   fmt::format("Size of the pictures, {}; they show all that a camera sees, and more beside "
+                               "it where the shape is another",
+                               kPictureSizeHelp))
+      ->default_str("that of each camera")
+      ->type_name("WxH");
   command->add_option("--spp", flags->samples, "Paths a pixel of the reference")
       ->type_name("N")
       ->check(CLI::Range(1, kMostSamples));

@@ -76,7 +76,8 @@ JsonAnswer stagesKeys() {
            {"stages[].settings[].unit", "of the value"},
            {"stages[].settings[].choices[]", "the words it takes"},
            {"stages[].settings[].advanced", "rarely needed"},
-           {"stages[].settings[].speed_only", "changes no result"}}};
+           {"stages[].settings[].speed_only", "changes no result"},
+           {"stages[].settings[].pictures_only", "changes how results are drawn, and no result"}}};
 }
 
 JsonAnswer checkKeys() {

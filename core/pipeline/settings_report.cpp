@@ -99,6 +99,7 @@ Json toJsonValue(const Setting& setting) {
   if (!info.choices.empty()) j["choices"] = info.choices;
   if (info.advanced) j["advanced"] = true;
   if (info.effect == Effect::SpeedOnly) j["speed_only"] = true;
+  if (info.effect == Effect::Pictures) j["pictures_only"] = true;
   return j;
 }
 

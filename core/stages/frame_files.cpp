@@ -67,18 +67,25 @@ GaussianFrame readFrame(const StepId& step, const fs::path& folder) {
   return frame;
 }
 
-void addVisibility(VisibilityFile file, const fs::path& folder, GaussianFrame& frame) {
-  const std::size_t n = frame.cloud.size();
-  if (file.normal.size() != n) {
-    throw Error(Error::Kind::Data, fmt::format("\"{}\": expected {} Gaussians, found {}",
-                                               (folder / kVisibilityFile).string(), n, file.normal.size()));
+void addVisibility(VisibilityFile file, std::span<const vec3> axes, const fs::path& folder,
+                   GaussianFrame& frame) {
+  if (file.normal.size() != axes.size()) {
+    throw Error(Error::Kind::Data,
+                fmt::format("\"{}\": expected {} Gaussians, found {}", (folder / kVisibilityFile).string(),
+                            axes.size(), file.normal.size()));
   }
-  std::vector<float> sides(n);
-  for (std::size_t i = 0; i < n; ++i)
-    sides[i] = glm::dot(file.normal[i], thinAxis(frame.cloud, i)) < 0 ? -1.0f : 1.0f;
+  std::vector<float> sides(axes.size());
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    sides[i] = glm::dot(file.normal[i], axes[i]) < 0 ? -1.0f : 1.0f;
   frame.attributes.push_back({{.name = kVisibilityName, .channels = 1, .coefficients = kShCount},
                               std::move(file.visibility.coefficients)});
   frame.attributes.push_back({{.name = kNormalSideName}, std::move(sides)});
+}
+
+std::vector<vec3> thinAxes(const GaussianCloud& cloud) {
+  std::vector<vec3> axes(cloud.size());
+  for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = thinAxis(cloud, i);
+  return axes;
 }
 
 FrameJoints readJoints(const fs::path& folder) {

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "core/io/visibility_ply.h"
 #include "core/pipeline/result_store.h"
@@ -14,9 +16,12 @@ namespace beam {
 
 // `folder`: a result of kMaterialsStep, kRefineStep or kFitStep.
 GaussianFrame readFrame(const StepId& step, const std::filesystem::path& folder);
-// Adds what was baked of the same surface, kVisibilityName and kNormalSideName. Throws Error{Data}, which
-// names the `folder` that it was read from, where it is of another number of Gaussians.
-void addVisibility(VisibilityFile file, const std::filesystem::path& folder, GaussianFrame& frame);
+// Adds what was baked of the same surface, kVisibilityName and kNormalSideName. `axes`: thinAxis of the
+// Gaussians as they were when it was baked. Throws Error{Data}, which names the `folder` that it was read
+// from, where it is of another number of Gaussians.
+void addVisibility(VisibilityFile file, std::span<const vec3> axes, const std::filesystem::path& folder,
+                   GaussianFrame& frame);
+std::vector<vec3> thinAxes(const GaussianCloud& cloud);
 FrameJoints readJoints(const std::filesystem::path& folder);  // of kJointsStep
 
 // --- Results of settings that are no longer in force: to look at, never to score or to export. Those that

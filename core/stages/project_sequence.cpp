@@ -54,6 +54,7 @@ GaussianFrame interpolated(const SolvedPair& pair) {
     return readSplatPly(materials ? *s.materials / kMaterialsFile : s.skin / kCloudFile);
   };
   SplatFile from = read(a), to = read(b);
+  const std::vector<vec3> axes = thinAxes(from.cloud);
   GaussianFrame frame;
   frame.cloud = interpolateSkin(readCarriedSkin(std::move(from.cloud), a.skin, &a.joints),
                                 readCarriedSkin(std::move(to.cloud), b.skin, &b.joints),
@@ -66,7 +67,7 @@ GaussianFrame interpolated(const SolvedPair& pair) {
     VisibilityFile visibility = readVisibilityPly(*a.visibility / kVisibilityFile);
     visibility.visibility = interpolateSh(
         visibility.visibility, readVisibilityPly(*b.visibility / kVisibilityFile).visibility, between.share);
-    addVisibility(std::move(visibility), *a.visibility, frame);
+    addVisibility(std::move(visibility), axes, *a.visibility, frame);
   }
   return frame;
 }
@@ -273,7 +274,7 @@ class ProjectSequence final : public GaussianSequence {
   void addVisibilityOf(FrameIndex frame, GaussianFrame& found) const {
     if (!found.refined) return;
     if (const auto folder = result(kVisibilityStep, frame))
-      addVisibility(readVisibilityPly(*folder / kVisibilityFile), *folder, found);
+      addVisibility(readVisibilityPly(*folder / kVisibilityFile), thinAxes(found.cloud), *folder, found);
   }
   std::optional<GaussianFrame> own(FrameIndex frame) const {
     for (const StepId& step : kFrameSteps) {

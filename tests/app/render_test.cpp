@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "core/io/image_file.h"
@@ -67,6 +68,16 @@ TEST_F(Render, LetsLightFallAsItIsToldForThesePictures) {
   EXPECT_FALSE(fs::exists(at("x")));
 }
 
+TEST_F(Render, MixesNoWaysOfLightInOneFolder) {
+  ASSERT_EQ(beam(command("mix", {"--cameras", "cam00"})).code, 0);
+  const Words other{"--cameras", "cam01", "--set", kAo};
+  const Said said = beam(command("mix", other));
+  EXPECT_EQ(said.code, 2);
+  EXPECT_THAT(said.err, AllOf(HasSubstr("lit by the renderer cpu"), HasSubstr("ambient occlusion alone")));
+  EXPECT_FALSE(fs::exists(at("mix/relight_environment/cam01")));
+  EXPECT_EQ(beam(command("mix", other + Words{"--force"})).code, 0);
+}
+
 TEST_F(Render, AWayOfLightThatAProjectKeepsComputesNothing) {
   const fs::path project = at("kept.beam");
   fs::copy(SolvedHouse::project(), project, fs::copy_options::recursive);
@@ -94,6 +105,16 @@ TEST_F(Render, FollowsLightPathByPath) {
   EXPECT_THAT(beam(command("out", reference + lit)).out, HasSubstr("nothing to draw"));
   const Said more = beam(command("out", reference + lit + Words{"--no-denoise"}));
   EXPECT_THAT(more.out, HasSubstr("wrote relight")) << more.err;
+}
+
+TEST_F(Render, MakesPicturesOfAnotherSize) {
+  const Said said = beam(command("out", {"--size", "80x40", "--cameras", "cam00"}));
+  ASSERT_EQ(said.code, 0) << said.err;
+  const Planes depth = readExr(at("out/depth/cam00/000000.exr"), {"Y"});
+  EXPECT_EQ(ivec2(depth.width, depth.height), ivec2(80, 40));
+  EXPECT_TRUE(std::any_of(depth.values.begin(), depth.values.end(), [](float z) { return z > 0; }));
+  for (const char* none : {"80", "80x", "8x8", "80x40x3", "axb"})
+    EXPECT_EQ(beam(command("none", {"--size", none})).code, 2) << none;
 }
 
 TEST_F(Render, RefusesOfARendererWhatIsOfAnotherOne) {
