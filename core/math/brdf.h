@@ -10,7 +10,8 @@
 
 namespace beam {
 
-inline constexpr float kF0 = 0.04f;  // BEAM eq. 19
+inline constexpr float kF0 = 0.04f;              // BEAM eq. 19
+inline constexpr float kLeastRoughness = 0.04f;  // a mirror has no lobe
 
 inline float ggxAlpha(float roughness) { return roughness * roughness; }
 

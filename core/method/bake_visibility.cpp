@@ -119,8 +119,7 @@ mat3 frameOf(vec3 normal, float angle) {
 SeenSurface seenSurface(const GaussianCloud& cloud, std::span<const Camera> cameras, ComputeDevice& device,
                         Progress& progress) {
   std::vector<Sight> sights(cloud.size());
-  std::vector<vec3> axes(cloud.size());
-  for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = thinAxis(cloud, i);
+  const std::vector<vec3> axes = thinAxes(cloud);
   const GaussianBuffers buffers = toBuffers(cloud);
   RasterizerCache rasterizers(device, 1);
   RasterImages images;

@@ -18,8 +18,6 @@ constexpr float kDiffuseShare =
 constexpr float kDegenerate = 0.1f;  // |sum w n| below this share of alpha is no normal (methods 7.1)
 enum Extra { kBaseColor = 0, kOcclusion = 3, kRoughness = 4, kExtraCount = 5 };
 
-constexpr float kLeastRoughness = 0.04f;  // a mirror has no lobe
-
 vec3 triple(const Planes& p, std::size_t i, int first = 0) {
   return {p.plane(first)[i], p.plane(first + 1)[i], p.plane(first + 2)[i]};
 }

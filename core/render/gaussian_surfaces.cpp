@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/math/brdf.h"
 #include "core/scene/thin_axis.h"
 #include "core/scene/transform.h"
 
 namespace beam {
 namespace {
-
-constexpr float kLeastRoughness = 0.04f;  // a mirror has no lobe
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {

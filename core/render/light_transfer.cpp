@@ -15,7 +15,6 @@ namespace {
 constexpr int kWidth = 64, kSourceWidth = 128;
 constexpr int kLobes = 33;  // roughness 0 .. 1
 constexpr int kLobeSteps = 2048;
-constexpr float kLeastRoughness = 0.04f;
 
 // How much of each band a lobe of roughness i / (kLobes - 1) leaves: the mean of P_l over it. The lobe is
 // that of the prefiltered levels: D(h) (n.l) about n = v (Karis 2013).

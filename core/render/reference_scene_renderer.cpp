@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/filter.h"
+#include "core/math/brdf.h"
 #include "core/math/color.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/render/gaussian_surfaces.h"
@@ -25,7 +26,6 @@ constexpr float kLeastAlbedo = 0.05f;  // of what a denoised signal is divided b
 constexpr int kLevels = 5;
 constexpr int kTries = 16;
 constexpr int kMostOfAPass = 16;  // paths a pixel between two pictures
-constexpr float kLeastRoughness = 0.04f;
 constexpr float kNoLimit = 1e30f;
 
 // What the rasteriser blends of a view: the first hits.

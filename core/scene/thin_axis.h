@@ -2,6 +2,8 @@
 // The axis along which a Gaussian is thinnest: its normal, but for the side.
 #pragma once
 
+#include <vector>
+
 #include "core/scene/gaussian_cloud.h"
 
 namespace beam {
@@ -11,6 +13,12 @@ inline vec3 thinAxis(const GaussianCloud& cloud, std::size_t i) {
   const vec3 s = cloud.scale_m[i];
   const int axis = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
   return glm::mat3_cast(cloud.rotation[i])[axis];
+}
+
+inline std::vector<vec3> thinAxes(const GaussianCloud& cloud) {
+  std::vector<vec3> axes(cloud.size());
+  for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = thinAxis(cloud, i);
+  return axes;
 }
 
 // Away from the middle of the cloud: all that is known of a Gaussian that nobody sees. Wrong on the inner

@@ -10,7 +10,6 @@
 #include "core/io/mesh_ply.h"
 #include "core/io/splat_ply.h"
 #include "core/io/visibility_ply.h"
-#include "core/scene/thin_axis.h"
 #include "core/stages/result_files.h"
 #include "core/stages/step_ids.h"
 #include "core/stages/track_files.h"
@@ -80,12 +79,6 @@ void addVisibility(VisibilityFile file, std::span<const vec3> axes, const fs::pa
   frame.attributes.push_back({{.name = kVisibilityName, .channels = 1, .coefficients = kShCount},
                               std::move(file.visibility.coefficients)});
   frame.attributes.push_back({{.name = kNormalSideName}, std::move(sides)});
-}
-
-std::vector<vec3> thinAxes(const GaussianCloud& cloud) {
-  std::vector<vec3> axes(cloud.size());
-  for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = thinAxis(cloud, i);
-  return axes;
 }
 
 FrameJoints readJoints(const fs::path& folder) {

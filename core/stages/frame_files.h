@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "core/io/visibility_ply.h"
 #include "core/pipeline/result_store.h"
@@ -21,7 +20,6 @@ GaussianFrame readFrame(const StepId& step, const std::filesystem::path& folder)
 // from, where it is of another number of Gaussians.
 void addVisibility(VisibilityFile file, std::span<const vec3> axes, const std::filesystem::path& folder,
                    GaussianFrame& frame);
-std::vector<vec3> thinAxes(const GaussianCloud& cloud);
 FrameJoints readJoints(const std::filesystem::path& folder);  // of kJointsStep
 
 // --- Results of settings that are no longer in force: to look at, never to score or to export. Those that

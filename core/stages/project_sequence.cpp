@@ -15,6 +15,7 @@
 #include "core/io/visibility_ply.h"
 #include "core/method/follow_surface.h"
 #include "core/method/interpolate_skin.h"
+#include "core/scene/thin_axis.h"
 #include "core/stages/carried_skin.h"
 #include "core/stages/frame_files.h"
 #include "core/stages/result_files.h"

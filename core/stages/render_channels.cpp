@@ -49,12 +49,15 @@ bool isLit(const RenderRequest& request) {
                      [](const std::string& id) { return needsLight(channelOf(id)); });
 }
 
+bool byOcclusion(const RenderRequest& request, const RendererAbilities& abilities) {
+  return abilities.occlusion && request.lighting.environment.shadows == kOcclusionAlone;
+}
+
 // Which way of light is in a picture, in words.
 std::string litBy(const RenderRequest& request, const RendererAbilities& abilities) {
   std::string text = abilities.id;
   if (!abilities.settings.empty()) text += ", " + abilities.settings;
-  if (abilities.occlusion && request.lighting.environment.shadows == kOcclusionAlone)
-    text += ", ambient occlusion alone";
+  if (byOcclusion(request, abilities)) text += ", ambient occlusion alone";
   return text;
 }
 
@@ -164,10 +167,6 @@ class ChannelWriter {
   }
 
  private:
-  bool byOcclusion() const {
-    return renderer_.abilities().occlusion && request_.lighting.environment.shadows == kOcclusionAlone;
-  }
-
   // Of all pictures of all frames. One of a renderer that refines takes long and is told of path by path.
   double share(std::size_t views) const {
     return static_cast<double>(views) / static_cast<double>(request_.views.size() * request_.frames.size());
@@ -246,7 +245,7 @@ class ChannelWriter {
       source.channels.push_back(d.name);
       if (const auto light = lights_.find(d.name); light != lights_.end()) {
         source.panoramas.push_back(light->second.digest);
-        if (byOcclusion()) source.shadows = kOcclusionAlone;
+        if (byOcclusion(request_, renderer_.abilities())) source.shadows = kOcclusionAlone;
       }
     }
     return digestText(source);
