@@ -69,20 +69,27 @@ std::string shapeDoubt(const Image<vec3>& radiance, const std::string& name) {
       name, radiance.width, radiance.height);
 }
 
+// Resizing filters leave such negative values beside bright texels; they say nothing of a panorama.
+constexpr float kFilterDip = 1e-3f;
+
 Environment makeEnvironment(Image<vec3> radiance) {
   if (radiance.empty()) throw Error(Error::Kind::Data, "the panorama is empty: expected at least one pixel");
-  std::size_t cleared = 0;
+  std::size_t not_finite = 0, negative = 0;
   for (vec3& p : radiance.pixels) {
     for (int c = 0; c < 3; ++c) {
       if (std::isfinite(p[c]) && p[c] >= 0) continue;
+      if (!std::isfinite(p[c]))
+        ++not_finite;
+      else if (p[c] <= -kFilterDip)
+        ++negative;
       p[c] = 0;
-      ++cleared;
     }
   }
-  if (cleared > 0) {
+  if (not_finite + negative > 0) {
     logWarning(
-        "panorama: expected finite radiance of at least 0, found {} values that are not; they count as black",
-        cleared);
+        "panorama: expected finite radiance of at least 0, found {} values that are not finite and {} below "
+        "0; they count as black",
+        not_finite, negative);
   }
   radiance.encoding = Encoding::Linear;
   return {std::move(radiance)};

@@ -32,7 +32,8 @@ vec3 radianceFrom(const Environment& environment, vec3 direction);
 // What is wrong with the shape of a panorama called `name`; empty: it is twice as wide as high.
 std::string shapeDoubt(const Image<vec3>& radiance, const std::string& name);
 
-// Clears negative and non-finite texels (logged), throws Error{Data} when the panorama is empty.
+// Clears negative and non-finite texels (logged, but for negative ones nearer to 0 than 1e-3), throws
+// Error{Data} when the panorama is empty.
 Environment makeEnvironment(Image<vec3> radiance);
 
 // Mean radiance over the sphere and the direction of the brightest texel, for `beam check`.

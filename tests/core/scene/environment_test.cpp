@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/log.h"
 #include "core/base/rng.h"
 #include "core/math/color.h"
 
@@ -95,6 +96,21 @@ TEST(Environment, OfAPositiveYawMovesFromPlusZTowardsPlusX) {
     EXPECT_LT(glm::distance(brightestDirection(e), turnedAboutY(straight, yaw)), 1e-5f);
     EXPECT_NEAR(radianceFrom(e, brightestDirection(e)).x, 9, 0.05);
   }
+}
+
+TEST(Environment, SaysWhatItClearsButNotWhatFiltersLeave) {
+  std::vector<std::string> said;
+  const int sink = addLogSink([&](const LogRecord& r) { said.push_back(r.text); });
+  Image<vec3> map(8, 4, vec3(1));
+  map(2, 1).x = -9e-4f;
+  const Environment ordinary = makeEnvironment(map);
+  EXPECT_EQ(ordinary.radiance(2, 1), vec3(0, 1, 1));
+  EXPECT_TRUE(said.empty());
+  map(3, 1) = vec3(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2);
+  EXPECT_EQ(makeEnvironment(map).radiance(3, 1), vec3(0));
+  removeLogSink(sink);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("2 values that are not finite and 1 below 0"), std::string::npos) << said[0];
 }
 
 TEST(Environment, IsMadeWithoutNegativeAndUnboundedTexels) {
