@@ -52,4 +52,9 @@ inline Reflectance reflectance(vec3 normal, vec3 to_light, vec3 to_eye, float al
   return {f, d * f / ((1 + lambda_i + lambda_o) * 4 * cos_i * cos_o), d / ((1 + lambda_o) * 4 * cos_o)};
 }
 
+// What leaves towards the eye of light of irradiance 1 on a surface that faces it.
+inline vec3 scattered(const Reflectance& r, vec3 base_color, float cos_i) {
+  return (base_color * ((1 - r.fresnel) / kPi) + vec3(r.specular)) * cos_i;
+}
+
 }  // namespace beam

@@ -51,13 +51,15 @@ class CpuSceneRenderer final : public SceneRenderer {
       : device_(std::move(device)),
         lights_(lights ? std::move(lights) : std::make_shared<PreparedLights>()),
         renderer_(*device_, kept_sizes),
-        resident_(device_->newResidentScene()) {
+        resident_(device_->newResidentScene()),
+        lamps_(*device_) {
     abilities_.id = "cpu";
     abilities_.title = device_->info().title;
     for (const ChannelInfo& c : channels())
       if (c.id == kRelightChannel || drawnChannels().contains(c.id)) abilities_.channels.push_back(c.id);
     abilities_.attributes = true;
     abilities_.lights = {{"environment", true}};
+    for (const std::string& kind : lightKinds()) abilities_.lights.push_back({kind, true});
     abilities_.occlusion = true;
     abilities_.without_visibility = "ambient occlusion alone keeps the panorama's light off";
   }
@@ -70,13 +72,15 @@ class CpuSceneRenderer final : public SceneRenderer {
       instances_loaded_ = false;
       view_ = nullptr;
       resident_->load(scene.instances);
+      lamps_.forget();
       instances_ = scene.instances;
       instances_loaded_ = true;
     }
-    environment_ = scene.lighting.environment;
-    if (scene.environment == panorama_) return;
-    light_ = scene.environment ? lights_->of(scene.environment, progress) : nullptr;
-    panorama_ = scene.environment;
+    lighting_ = scene.lighting;
+    const auto panorama = lighting_.environment.enabled ? scene.environment : nullptr;
+    if (panorama == panorama_) return;
+    light_ = panorama ? lights_->of(panorama, progress) : nullptr;
+    panorama_ = panorama;
   }
 
   void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
@@ -100,8 +104,8 @@ class CpuSceneRenderer final : public SceneRenderer {
     const bool lit = std::any_of(channels.begin(), channels.end(),
                                  [](const ChannelInfo& c) { return c.id == kRelightChannel; });
     const bool same = view_ && camera_ == camera && further == further_;
-    const bool visibility =
-        resident_->has(kVisibilityName) && ((lit && transfers()) || (same && view_->hasVisibility()));
+    const bool visibility = resident_->has(kVisibilityName) &&
+                            ((lit && light_ && transfers()) || (same && view_->hasVisibility()));
     if (same && (!visibility || view_->hasVisibility())) return;
     view_ = nullptr;
     lit_ = nullptr;
@@ -110,7 +114,7 @@ class CpuSceneRenderer final : public SceneRenderer {
     further_ = std::move(further);
   }
 
-  bool transfers() const { return environment_.shadows != kOcclusionAlone; }
+  bool transfers() const { return lighting_.environment.shadows != kOcclusionAlone; }
 
   std::shared_ptr<const Planes> valuesOf(const ChannelInfo& channel) {
     if (channel.id == kRelightChannel) return lit();
@@ -123,17 +127,32 @@ class CpuSceneRenderer final : public SceneRenderer {
     return values;
   }
 
+  // Past lamps that were turned, what the panorama gives stays.
   std::shared_ptr<const Planes> lit() {
-    if (lit_ && lit_by_ == light_ && lit_as_ == environment_) return lit_;
+    const std::vector<ShadedLamp>& lamps = lamps_.of(lighting_, *resident_);
+    std::shared_ptr<const Planes> by_panorama = light_ ? litByPanorama() : nullptr;
+    if (lamps.empty() && by_panorama) return by_panorama;
+    auto values = pool_.take();
+    if (by_panorama)
+      *values = *by_panorama;
+    else
+      *values = Planes(camera_.width, camera_.height, 3);
+    view_->addLamps(lamps, *values);
+    return values;
+  }
+
+  std::shared_ptr<const Planes> litByPanorama() {
+    const EnvironmentLight& environment = lighting_.environment;
+    if (lit_ && lit_by_ == light_ && lit_as_ == environment) return lit_;
     lit_ = nullptr;
     auto values = pool_.take();
     view_->relit(*light_,
-                 {.yaw_rad = static_cast<float>(environment_.rotation_deg * kPi / 180),
-                  .exposure = static_cast<float>(environment_.gain),
+                 {.yaw_rad = static_cast<float>(environment.rotation_deg * kPi / 180),
+                  .exposure = static_cast<float>(environment.gain),
                   .transfer = transfers()},
                  *values);
     lit_by_ = light_;
-    lit_as_ = environment_;
+    lit_as_ = environment;
     return lit_ = values;
   }
 
@@ -144,7 +163,8 @@ class CpuSceneRenderer final : public SceneRenderer {
   std::unique_ptr<ResidentScene> resident_;
   std::vector<RenderInstance> instances_;
   bool instances_loaded_ = false;
-  EnvironmentLight environment_;
+  ShadedLamps lamps_;
+  Lighting lighting_;
   std::shared_ptr<const Environment> panorama_;
   std::shared_ptr<const PreparedLight> light_;  // of panorama_
   const RasterView* view_ = nullptr;            // of camera_ and further_; null: none yet

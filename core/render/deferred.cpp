@@ -37,6 +37,7 @@ class Rays {
  public:
   explicit Rays(const Camera& camera)
       : world_from_camera_(glm::conjugate(camera.camera_from_world.rotation)),
+        eye_m_(inverse(camera.camera_from_world).translation_m),
         x_(static_cast<std::size_t>(camera.width)),
         y_(static_cast<std::size_t>(camera.height)) {
     for (std::size_t x = 0; x < x_.size(); ++x) x_[x] = rayOf(camera.intrinsics, {x + 0.5, 0.5}).x;
@@ -46,10 +47,14 @@ class Rays {
     return {x_[static_cast<std::size_t>(x)], y_[static_cast<std::size_t>(y)], 1};
   }
   vec3 toEye(int x, int y) const { return vec3(-glm::normalize(world_from_camera_ * through(x, y))); }
+  vec3 at(int x, int y, float z_m) const {
+    return vec3(eye_m_ + world_from_camera_ * (static_cast<double>(z_m) * through(x, y)));
+  }
   const dquat& worldFromCamera() const { return world_from_camera_; }
 
  private:
   dquat world_from_camera_;
+  dvec3 eye_m_;
   std::vector<double> x_, y_;  // of columns and rows: a division a pixel would be a tenth of its shading
 };
 
@@ -78,6 +83,7 @@ struct Surface {
   float occlusion, roughness;
   vec3 normal, to_eye;
   const Visibility* visibility = nullptr;  // null: the occlusion holds in its place
+  const TransferTables* tables = nullptr;  // as LightTurn gives them, with a visibility
 };
 
 // GTAO's fit of light that bounces between surfaces of the same colour (methods 5.11).
@@ -104,20 +110,29 @@ Surface surfaceOf(vec3 base_color, float occlusion, float roughness, float alpha
 vec3 radiance(const Surface& s, const PreparedLight& light, const LightTurn& turn, const ShadeOptions& o) {
   const float n_dot_v = std::clamp(glm::dot(s.normal, s.to_eye), 1e-3f, 1.0f);
   const vec3 normal = turn(s.normal), open = irradiance(light, normal);
-  const vec3 mirror = turn(glm::normalize(2 * glm::dot(s.normal, s.to_eye) * s.normal - s.to_eye));
+  const vec3 mirror = glm::normalize(2 * glm::dot(s.normal, s.to_eye) * s.normal - s.to_eye);
   vec3 seen(s.occlusion);  // the share of `open` that arrives
   float shadow = 1;        // the share of the highlight
   if (s.visibility) {
-    const Visibility visibility = turn.of(*s.visibility);
-    seen = seenIrradiance(light.transfer, normal, visibility, open) / glm::max(open, vec3(1e-20f));
-    shadow = seenHighlight(visibility, mirror, s.roughness);
+    seen = seenIrradiance(*s.tables, normal, *s.visibility, open) / glm::max(open, vec3(1e-20f));
+    shadow = seenHighlight(*s.visibility, mirror, s.roughness);
   } else if (o.specular_occlusion) {
     shadow = specularOcclusion(n_dot_v, s.occlusion, s.roughness);
   }
   const vec3 bounced = o.multibounce_ao ? multibounce(seen, s.base_color) : seen;
   const vec3 diffuse = kDiffuseShare / kPi * s.base_color * open * bounced;
   const vec2 ab = splitSum(n_dot_v, s.roughness);
-  return diffuse + shadow * (kF0 * ab.x + ab.y) * prefiltered(light, mirror, s.roughness);
+  return diffuse + shadow * (kF0 * ab.x + ab.y) * prefiltered(light, turn(mirror), s.roughness);
+}
+
+vec3 lampRadiance(const ShadedLamp& lamp, const Surface& s, vec3 x_m) {
+  const ArrivingLight light = arrivingAt(lamp.source, x_m);
+  const float cosine = glm::dot(s.normal, light.toward);
+  if (cosine <= 0 || light.irradiance == vec3(0)) return vec3(0);
+  const float seen = lamp.shadow ? lamp.shadow->lightAt(x_m + kShadowOffset_m * s.normal) : 1;
+  if (seen <= 0) return vec3(0);
+  const Reflectance r = reflectance(s.normal, light.toward, s.to_eye, ggxAlpha(s.roughness));
+  return seen * light.irradiance * scattered(r, s.base_color, cosine);
 }
 
 }  // namespace
@@ -176,23 +191,45 @@ Visibility RasterView::visibilityAt(std::size_t pixel, float alpha) const {
   return v;
 }
 
+template <class Body, class Nothing>
+void RasterView::forSurfaces(Body&& body, Nothing&& nothing) const {
+  const Rays rays(camera_);
+  forPixels(images_.alpha.width, images_.alpha.height, [&](int x, int y, std::size_t i) {
+    const float alpha = images_.alpha.values[i];
+    if (alpha < kVisibleAlpha) return nothing(i);
+    const vec3 base_color = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
+    body(i, alpha,
+         surfaceOf(base_color, clampedShare(extra(kOcclusion)[i]), clampedShare(extra(kRoughness)[i]), alpha,
+                   resolveNormal(triple(images_.normal, i), alpha, rays, x, y), rays.toEye(x, y)),
+         [&] { return rays.at(x, y, images_.median_depth.values[i]); });
+  });
+}
+
 void RasterView::relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const {
   requireMaterials("relit");
   shape(images_.alpha, 3, out);
-  const Rays rays(camera_);
   const LightTurn turn(light, options.yaw_rad);
   const bool transfer = options.transfer && hasVisibility();
-  forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
-    const float alpha = images_.alpha.values[i];
-    if (alpha < kVisibleAlpha) return put(out, i, vec3(0));
-    const vec3 base_color = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
-    Surface s =
-        surfaceOf(base_color, clampedShare(extra(kOcclusion)[i]), clampedShare(extra(kRoughness)[i]), alpha,
-                  resolveNormal(triple(images_.normal, i), alpha, rays, x, y), rays.toEye(x, y));
-    const Visibility visibility = transfer ? visibilityAt(i, alpha) : Visibility{};
-    if (transfer) s.visibility = &visibility;
-    put(out, i, options.exposure * alpha * beam::radiance(s, light, turn, options));
-  });
+  const TransferTables tables = transfer ? turn.of(light.transfer) : TransferTables{};
+  forSurfaces(
+      [&](std::size_t i, float alpha, Surface s, const auto&) {
+        const Visibility visibility = transfer ? visibilityAt(i, alpha) : Visibility{};
+        if (transfer) s.visibility = &visibility, s.tables = &tables;
+        put(out, i, options.exposure * alpha * beam::radiance(s, light, turn, options));
+      },
+      [&](std::size_t i) { put(out, i, vec3(0)); });
+}
+
+void RasterView::addLamps(const std::vector<ShadedLamp>& lamps, Planes& out) const {
+  requireMaterials("lamps");
+  forSurfaces(
+      [&](std::size_t i, float alpha, const Surface& s, const auto& position) {
+        vec3 sum(0);
+        const vec3 x_m = position();
+        for (const ShadedLamp& lamp : lamps) sum += lampRadiance(lamp, s, x_m);
+        put(out, i, triple(out, i) + alpha * sum);
+      },
+      [](std::size_t) {});
 }
 
 GBuffer RasterView::gbuffer() const {

@@ -10,6 +10,7 @@
 #include "core/render/device.h"
 #include "core/render/prepared_light.h"
 #include "core/render/rasterizer_cache.h"
+#include "core/render/shaded_lamps.h"
 #include "core/scene/gbuffer.h"
 
 namespace beam {
@@ -42,6 +43,8 @@ class RasterView {
   void attribute(std::string_view name, Planes& out) const;
   // Linear relit radiance x alpha, premultiplied on black.
   void relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const;
+  // Adds the light of lamps to what relit() gave. Occlusion and visibility are of the panorama alone.
+  void addLamps(const std::vector<ShadedLamp>& lamps, Planes& out) const;
   GBuffer gbuffer() const;
 
  private:
@@ -49,6 +52,9 @@ class RasterView {
   const float* extra(int channel) const { return images_.extra.plane(channel); }
   void share(int channel, int count, Planes& out) const;
   Visibility visibilityAt(std::size_t pixel, float alpha) const;
+  // body(pixel, alpha, surface, position) of what is seen; the others as `nothing` does.
+  template <class Body, class Nothing>
+  void forSurfaces(Body&& body, Nothing&& nothing) const;
   void requireMaterials(const char* what) const;
 
   Camera camera_;

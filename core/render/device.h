@@ -7,6 +7,7 @@
 
 #include "core/render/rasterizer.h"
 #include "core/render/resident_scene.h"
+#include "core/render/shadow_drawer.h"
 #include "core/render/tracer.h"
 #include "core/render/training_ops.h"
 
@@ -26,6 +27,7 @@ class ComputeDevice {
   virtual std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc& desc) = 0;
   virtual std::unique_ptr<ResidentScene> newResidentScene() = 0;
   virtual std::unique_ptr<Tracer> newTracer(const TracerDesc& desc, const GaussianCloud& cloud) = 0;
+  virtual std::unique_ptr<ShadowDrawer> newShadowDrawer() = 0;
   virtual std::unique_ptr<TrainingOps> newTrainingOps() = 0;
 };
 

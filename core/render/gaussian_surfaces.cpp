@@ -82,8 +82,8 @@ std::optional<GaussianSurfaces::FirstHit> GaussianSurfaces::first(vec3 eye, vec3
   return FirstHit{hitOf(*hit, eye, direction), !rules().counts(hit->splat, direction)};
 }
 
-float GaussianSurfaces::transmittance(vec3 origin, vec3 direction) const {
-  return tracer_->transmittance({origin, direction}, rules());
+float GaussianSurfaces::transmittance(vec3 origin, vec3 direction, float distance_m) const {
+  return tracer_->transmittance({origin, direction}, rules(distance_m));
 }
 
 }  // namespace beam

@@ -19,7 +19,7 @@ class GaussianSurfaces final : public PathSurfaces {
 
   // Its normal is -normalize(Sigma^-1 d), its base colour that of `direction` (methods 7.5).
   std::optional<PathHit> nearest(vec3 origin_m, vec3 direction, std::uint64_t chance) const override;
-  float transmittance(vec3 origin_m, vec3 direction) const override;
+  float transmittance(vec3 origin_m, vec3 direction, float distance_m) const override;
 
   // Of a ray that starts outside of everything, where Gaussians seen from behind are blended as well.
   struct FirstHit {
@@ -30,7 +30,9 @@ class GaussianSurfaces final : public PathSurfaces {
 
  private:
   PathHit hitOf(const SplatHit& hit, vec3 origin, vec3 direction) const;
-  BlendRules rules() const { return {.outward = outward_.empty() ? nullptr : outward_.data()}; }
+  BlendRules rules(float reach_m = kEndless_m) const {
+    return {.reach_m = reach_m, .outward = outward_.empty() ? nullptr : outward_.data()};
+  }
 
   GaussianCloud cloud_;
   Materials materials_;

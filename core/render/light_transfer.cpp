@@ -102,13 +102,13 @@ TransferTables prepareTransfer(const Image<vec3>& panorama, const Progress& prog
 }
 
 vec3 seenIrradiance(const TransferTables& tables, vec3 normal, const Visibility& v, vec3 open) {
-  vec3 sum(0);
+  std::array<vec3, kShCount> t{};
   forCorners(tables, normal, [&](const std::array<vec3, kShCount>& texel, float weight) {
-    // What is missing from V = 1, so that an open surface has E(n) to the bit.
-    vec3 part = (v[0] - 0.5f / kShC0) * texel[0];
-    for (int k = 1; k < kShCount; ++k) part += v[k] * texel[k];
-    sum += weight * part;
+    for (int k = 0; k < kShCount; ++k) t[k] += weight * texel[k];
   });
+  // What is missing from V = 1, so that an open surface has E(n) to the bit.
+  vec3 sum = (v[0] - 0.5f / kShC0) * t[0];
+  for (int k = 1; k < kShCount; ++k) sum += v[k] * t[k];
   return glm::clamp(open + sum, vec3(0), open);
 }
 

@@ -50,7 +50,7 @@ PathIntegrator::Scattered PathIntegrator::scatter(const PathHit& h, vec3 n, vec3
   if (cosine <= 0) return {};
   if (!settings_.specular) return {h.base_color * even, even};
   const Reflectance r = reflectance(n, wi, wo, ggxAlpha(h.roughness));
-  return {(h.base_color * ((1 - r.fresnel) / kPi) + vec3(r.specular)) * cosine,
+  return {scattered(r, h.base_color, cosine),
           settings_.visible_normals ? 0.5f * (even + r.reflection_pdf) : even};
 }
 
@@ -77,7 +77,7 @@ vec3 PathIntegrator::direct(const PathHit& h, vec3 n, vec3 wo, PathNumbers& numb
     const float density = settings_.draws == LightDraws::Both ? s.pdf + f.pdf : of_light ? s.pdf : f.pdf;
     if (f.pdf <= 0 || density <= 0) return;
     const vec3 light = f.value * s.radiance / density;
-    if (isLit(light)) sum += light * surfaces_.transmittance(o, wi);
+    if (isLit(light)) sum += light * surfaces_.transmittance(o, wi, PathSurfaces::kFar_m);
   };
   const vec2 u = numbers.next();
   const vec3 wi = drawnBySurface(h, n, wo, numbers);
@@ -86,6 +86,38 @@ vec3 PathIntegrator::direct(const PathHit& h, vec3 n, vec3 wo, PathNumbers& numb
     add(drawn, drawn.direction, true);
   }
   if (settings_.draws != LightDraws::OfLights) add(lights_.at(wi), wi, false);
+  return lights_.lamps().empty() ? sum : sum + lampLight(h, n, wo, wi, numbers);
+}
+
+// As of all light, each direction weighted by both densities; only a lamp draws where it has no extent.
+vec3 PathIntegrator::lampLight(const PathHit& h, vec3 n, vec3 wo, vec3 by_surface,
+                               PathNumbers& numbers) const {
+  vec3 sum(0);
+  const vec3 o = h.position_m + settings_.offset_m * n;
+  const auto add = [&](const PathLamp& lamp, const LampSample& s, bool of_light) {
+    const Scattered f = scatter(h, n, s.toward, wo);
+    const bool both = settings_.draws == LightDraws::Both;
+    const float density = s.pdf <= 0 ? 1 : both ? s.pdf + f.pdf : of_light ? s.pdf : f.pdf;
+    if (f.pdf <= 0 || density <= 0) return;
+    const vec3 light = f.value * s.light / density;
+    if (!isLit(light)) return;
+    if (!lamp.shadows()) {
+      sum += light;
+    } else if (s.distance_m == PathSurfaces::kFar_m) {
+      sum += light * surfaces_.transmittance(o, s.toward, s.distance_m);
+    } else {
+      const vec3 to = s.position_m - o;
+      const float distance_m = std::max(glm::length(to), 1e-6f);
+      sum += light * surfaces_.transmittance(o, to / distance_m, distance_m);
+    }
+  };
+  for (const PathLamp& lamp : lights_.lamps()) {
+    const vec2 u = lamp.wide() ? numbers.next() : vec2(0);
+    if (!lamp.wide() || settings_.draws != LightDraws::OfSurface)
+      add(lamp, lamp.sample(h.position_m, u), true);
+    if (lamp.wide() && settings_.draws != LightDraws::OfLights)
+      add(lamp, lamp.at(h.position_m, by_surface), false);
+  }
   return sum;
 }
 
@@ -123,9 +155,9 @@ float skyVisibility(const PathSurfaces& surfaces, vec3 x_m, vec3 normal, int sam
   const R2Sequence sequence{static_cast<std::uint32_t>(start.x * 0x1p31f),
                             static_cast<std::uint32_t>(start.y * 0x1p31f)};
   for (int i = 0; i < samples; ++i) {
-    open +=
-        surfaces.transmittance(x_m + PathSettings{}.offset_m * normal,
-                               frame.toWorld(cosineDirection(sequence(static_cast<std::uint32_t>(i))))) > 0;
+    open += surfaces.transmittance(x_m + PathSettings{}.offset_m * normal,
+                                   frame.toWorld(cosineDirection(sequence(static_cast<std::uint32_t>(i)))),
+                                   PathSurfaces::kFar_m) > 0;
   }
   return static_cast<float>(open) / static_cast<float>(samples);
 }

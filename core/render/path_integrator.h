@@ -12,10 +12,13 @@
 // scene-linear. Deterministic for the numbers of the path.
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <span>
 
 #include "core/base/rng.h"
 #include "core/math/types.h"
+#include "core/render/path_lamp.h"
 #include "core/scene/environment.h"
 
 namespace beam {
@@ -34,14 +37,15 @@ class PathSurfaces {
   virtual ~PathSurfaces() = default;
   // `direction`: unit. `chance`: of this ray; a surface that stops light in part is met or not by it.
   virtual std::optional<PathHit> nearest(vec3 origin_m, vec3 direction, std::uint64_t chance) const = 0;
-  // Of light from however far: 1 where nothing is in its way, 0 where it does not get through.
-  virtual float transmittance(vec3 origin_m, vec3 direction) const = 0;
+  // Of light from `distance_m`: 1 where nothing is in its way, 0 where it does not get through.
+  virtual float transmittance(vec3 origin_m, vec3 direction, float distance_m) const = 0;
+  static constexpr float kFar_m = std::numeric_limits<float>::infinity();
 };
 
 struct LightSample {
-  vec3 direction{0};  // unit, to the light
-  vec3 radiance{0};   // >= 0
-  float pdf = 0;      // per steradian
+  vec3 direction{0, 1, 0};  // unit, to the light
+  vec3 radiance{0};         // >= 0
+  float pdf = 0;            // per steradian
 };
 
 class PathLights {
@@ -49,18 +53,28 @@ class PathLights {
   virtual ~PathLights() = default;
   virtual LightSample sample(vec2 u) const = 0;      // u in [0, 1)^2
   virtual LightSample at(vec3 direction) const = 0;  // what `sample` gives where it draws `direction`
+  // Beside light from everywhere; each is asked at every bounce.
+  virtual std::span<const PathLamp> lamps() const { return {}; }
 };
 
-// A panorama as light from infinitely far; keeps a reference.
+// A panorama as light from infinitely far, and lamps; keeps references. Null: there is no panorama.
 class PanoramaLights final : public PathLights {
  public:
-  explicit PanoramaLights(const EnvironmentSampler& sampler) : sampler_(sampler) {}
-  LightSample sample(vec2 u) const override { return of(sampler_.sample(u.x, u.y)); }
-  LightSample at(vec3 direction) const override { return of(sampler_.at(direction)); }
+  explicit PanoramaLights(const EnvironmentSampler& sampler) : sampler_(&sampler) {}
+  PanoramaLights(const EnvironmentSampler* sampler, std::span<const PathLamp> lamps)
+      : sampler_(sampler), lamps_(lamps) {}
+  LightSample sample(vec2 u) const override {
+    return sampler_ ? of(sampler_->sample(u.x, u.y)) : LightSample{};
+  }
+  LightSample at(vec3 direction) const override {
+    return sampler_ ? of(sampler_->at(direction)) : LightSample{.direction = direction};
+  }
+  std::span<const PathLamp> lamps() const override { return lamps_; }
 
  private:
   static LightSample of(const EnvironmentSampler::Sample& s) { return {s.direction, s.radiance, s.pdf}; }
-  const EnvironmentSampler& sampler_;
+  const EnvironmentSampler* sampler_;
+  std::span<const PathLamp> lamps_;
 };
 
 // Uniform pairs in [0, 1)^2 of one path, a dimension each call. Over the `samples` of a pixel every dimension
@@ -124,6 +138,7 @@ class PathIntegrator {
   Scattered scatter(const PathHit& hit, vec3 normal, vec3 to_light, vec3 to_eye) const;
   vec3 drawnBySurface(const PathHit& hit, vec3 normal, vec3 to_eye, PathNumbers& numbers) const;
   vec3 direct(const PathHit& hit, vec3 normal, vec3 to_eye, PathNumbers& numbers) const;
+  vec3 lampLight(const PathHit& hit, vec3 normal, vec3 to_eye, vec3 by_surface, PathNumbers& numbers) const;
 
   const PathSurfaces& surfaces_;
   const PathLights& lights_;

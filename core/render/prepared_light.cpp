@@ -247,6 +247,19 @@ LightTurn::LightTurn(const PreparedLight& light, float yaw_rad)
       sin_(std::sin(-yaw_rad - light.yaw_rad)),
       sh_(dmat3(cos_, 0, -sin_, 0, 1, 0, sin_, 0, cos_)) {}
 
+// (R v) . T = v . (R^T T): one turn of the tables instead of one of each visibility.
+TransferTables LightTurn::of(const TransferTables& tables) const {
+  const ShRotation back(dmat3(cos_, 0, sin_, 0, 1, 0, -sin_, 0, cos_));
+  TransferTables turned{tables.width, tables.height, tables.texels};
+  for (std::size_t i = 0; i < tables.texels.size(); ++i) {
+    float in[3 * kShCount], out[3 * kShCount];
+    for (int k = 0; k < 3 * kShCount; ++k) in[k] = tables.texels[i][k / 3][k % 3];
+    back.apply(3, in, out);
+    for (int k = 0; k < 3 * kShCount; ++k) turned.texels[i][k / 3][k % 3] = out[k];
+  }
+  return turned;
+}
+
 vec3 irradiance(const PreparedLight& light, vec3 normal) {
   return light.irradiance_map.empty() ? irradiance(light.irradiance_sh, normal)
                                       : lookUp(light.irradiance_map, normal);

@@ -43,6 +43,9 @@ class LightTurn {
     sh_.apply(1, visibility.data(), turned.data());
     return turned;
   }
+  // The tables by coefficients of the world's directions: looked up, as the others, by normals in the
+  // panorama's axes, they give of a visibility what those give of of(visibility).
+  TransferTables of(const TransferTables& tables) const;
   vec3 operator()(vec3 d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
 
  private:

@@ -256,13 +256,18 @@ class ReferenceSceneRenderer final : public SceneRenderer {
   void doLoad(const RenderScene& scene, const Progress& progress) override {
     RenderScene dark = scene;  // nothing is prepared of a light that is not shaded by
     dark.environment = nullptr;
+    dark.lighting.lights.clear();
     unlit_->load(dark, progress);
     if (!surfaces_ || scene.instances != instances_) surfaces_ = nullptr;
     instances_ = scene.instances;
     const EnvironmentLight& light = scene.lighting.environment;
-    if (!scene.environment || (scene.environment == panorama_ && light == light_)) return;
+    lamps_.clear();
+    for (const Light& lamp : scene.lighting.lights)
+      if (lamp.enabled && !std::holds_alternative<UnknownLight>(lamp.kind)) lamps_.emplace_back(lamp);
+    const auto panorama = light.enabled ? scene.environment : nullptr;
+    if (panorama == panorama_ && light == light_) return;
     sampler_ = nullptr;
-    panorama_ = scene.environment;
+    panorama_ = panorama;
     light_ = light;
   }
 
@@ -290,7 +295,7 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     if (!lit) return give(nullptr, 1, true);
     prepare(progress);
     const auto values = [&](const char* id) { return channelIn(first, id)->values; };
-    const PanoramaLights lights(*sampler_);
+    const PanoramaLights lights(sampler_.get(), lamps_);
     PathPicture picture({camera, values(kAlphaChannel), values(kDepthChannel), values(kNormalChannel),
                          values(kBaseColorChannel), values(kRoughnessChannel)},
                         *surfaces_, lights, options_);
@@ -311,7 +316,7 @@ class ReferenceSceneRenderer final : public SceneRenderer {
   void prepare(const Progress& progress) {
     if (!surfaces_) surfaces_ = std::make_unique<GaussianSurfaces>(instances_, *device_);
     progress.check();
-    if (sampler_) return;
+    if (sampler_ || !panorama_) return;
     sampler_ = std::make_unique<EnvironmentSampler>(
         *panorama_, static_cast<float>(light_.rotation_deg * kPi / 180), static_cast<float>(light_.gain));
     progress.check();
@@ -322,8 +327,9 @@ class ReferenceSceneRenderer final : public SceneRenderer {
   std::unique_ptr<SceneRenderer> unlit_;
   RendererAbilities abilities_;
   std::vector<RenderInstance> instances_;
-  std::unique_ptr<GaussianSurfaces> surfaces_;   // of instances_; null: not needed yet
-  std::shared_ptr<const Environment> panorama_;  // the last one that was loaded
+  std::unique_ptr<GaussianSurfaces> surfaces_;  // of instances_; null: not needed yet
+  std::vector<PathLamp> lamps_;
+  std::shared_ptr<const Environment> panorama_;  // of the last scene; null: it has none, or it is dark
   EnvironmentLight light_;
   std::unique_ptr<EnvironmentSampler> sampler_;  // of panorama_ and light_; null: not needed yet
 };

@@ -5,8 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/scene/light_source.h"
+#include "core/scene/thin_axis.h"
 
 namespace beam {
 namespace {
@@ -17,16 +22,43 @@ const LightAbility* abilityOf(const RendererAbilities& abilities, std::string_vi
   return found == abilities.lights.end() ? nullptr : &*found;
 }
 
-bool asksForShadows(const Light& light) {
-  return std::visit(
-      [](const auto& kind) {
-        if constexpr (requires { kind.shadows; }) return kind.shadows;
-        return false;
-      },
-      light.kind);
+std::string nameOf(const Light& light) { return light.title.empty() ? light.id : light.title; }
+
+constexpr std::size_t kNearest = 16;
+
+// Whether most of the Gaussians next to it turn their outer sides away from it; false where sides are
+// unknown.
+bool isInside(const RenderInstance& instance, vec3 world_m) {
+  const Attribute* side = attributeNamed(*instance.attributes, kNormalSideName);
+  const GaussianCloud& cloud = *instance.cloud;
+  if (!side || cloud.size() < kNearest) return false;
+  const auto x_m = vec3(inverse(instance.world_from_cloud) * dvec3(world_m));
+  std::array<std::pair<float, std::size_t>, kNearest> nearest;
+  nearest.fill({std::numeric_limits<float>::infinity(), 0});
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const vec3 d = cloud.position_m[i] - x_m;
+    const float distance2 = glm::dot(d, d);
+    if (distance2 >= nearest.back().first) continue;
+    nearest.back() = {distance2, i};
+    for (std::size_t k = kNearest - 1; k > 0 && nearest[k] < nearest[k - 1]; --k)
+      std::swap(nearest[k], nearest[k - 1]);
+  }
+  const auto away = std::count_if(nearest.begin(), nearest.end(), [&](const auto& n) {
+    return side->values[n.second] * glm::dot(thinAxis(cloud, n.second), x_m - cloud.position_m[n.second]) < 0;
+  });
+  return static_cast<std::size_t>(away) > kNearest / 2;
 }
 
-std::string nameOf(const Light& light) { return light.title.empty() ? light.id : light.title; }
+void addLightsInside(const RenderScene& scene, std::vector<std::string>& sentences) {
+  for (const Light& light : scene.lighting.lights) {
+    const std::vector<LightSource> sources = light.enabled ? sourcesOf(light) : std::vector<LightSource>();
+    const bool inside = std::any_of(sources.begin(), sources.end(), [&](const LightSource& s) {
+      return !s.far && std::any_of(scene.instances.begin(), scene.instances.end(),
+                                   [&](const RenderInstance& i) { return isInside(i, s.position_m); });
+    });
+    if (inside) sentences.push_back(fmt::format("light \"{}\" is inside the subject", nameOf(light)));
+  }
+}
 
 void addLights(const Lighting& lighting, const RendererAbilities& abilities,
                std::vector<std::string>& sentences) {
@@ -36,7 +68,7 @@ void addLights(const Lighting& lighting, const RendererAbilities& abilities,
     if (!ability) {
       sentences.push_back(fmt::format("light \"{}\" ({}) is not drawn by the renderer {}", nameOf(light),
                                       kindOf(light), abilities.id));
-    } else if (asksForShadows(light) && !ability->shadows) {
+    } else if (castsShadows(light) && !ability->shadows) {
       sentences.push_back(fmt::format("light \"{}\" ({}) casts no shadows in the renderer {}", nameOf(light),
                                       kindOf(light), abilities.id));
     }
@@ -70,6 +102,7 @@ std::vector<std::string> leftOut(const RenderScene& scene, const RendererAbiliti
   if (scene.environment && scene.lighting.environment.enabled && !abilityOf(abilities, "environment"))
     sentences.push_back(fmt::format("light from all around is not drawn by the renderer {}", abilities.id));
   addLights(scene.lighting, abilities, sentences);
+  addLightsInside(scene, sentences);
   if (!scene.meshes.empty() && !abilities.meshes)
     sentences.push_back(fmt::format("meshes are not drawn by the renderer {}", abilities.id));
   if (scene.ground.enabled && !abilities.ground)

@@ -67,7 +67,8 @@ class SceneRenderer {
   virtual ~SceneRenderer() = default;
   virtual const RendererAbilities& abilities() const = 0;
 
-  // What is drawn from now on; costs what is new in it. Returns what of it will not be seen, a sentence each.
+  // What is drawn from now on; costs what is new in it. Returns what of it will not be seen, or not as it is
+  // meant, a sentence each.
   // Throws Cancelled when the progress is stopped, and must be called again then.
   std::vector<std::string> load(const RenderScene& scene, const Progress& progress = Progress{});
 

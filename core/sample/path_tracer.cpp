@@ -123,10 +123,11 @@ struct SampleScene::State final : PathSurfaces {
         .roughness = look.roughness};
   }
 
-  float transmittance(vec3 o, vec3 d) const override {
+  float transmittance(vec3 o, vec3 d, float distance_m) const override {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay r = rayOf3(o, d);
+    r.tfar = std::min(r.tfar, distance_m);
     rtcOccluded1(scene, &context, &r);
     return r.tfar < 0 ? 0.0f : 1.0f;
   }

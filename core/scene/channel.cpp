@@ -180,8 +180,7 @@ Lack lackOf(const ChannelInfo& channel, const RenderScene& scene) {
     const auto has = [&](const RenderInstance& i) { return hasAttribute(i, channel.attribute); };
     if (!allOf(scene, has)) return Lack::Attribute;
   }
-  const bool lit = scene.environment && scene.lighting.environment.enabled;
-  return channel.needs == ChannelNeeds::MaterialsAndLight && !lit ? Lack::Light : Lack::None;
+  return channel.needs == ChannelNeeds::MaterialsAndLight && !isLit(scene) ? Lack::Light : Lack::None;
 }
 
 }  // namespace beam

@@ -213,6 +213,15 @@ const Light* lightOf(const Lighting& lighting, std::string_view id) {
   return found == lighting.lights.end() ? nullptr : &*found;
 }
 
+bool castsShadows(const Light& light) {
+  return std::visit(
+      [](const auto& kind) {
+        if constexpr (requires { kind.shadows; }) return kind.shadows;
+        return false;
+      },
+      light.kind);
+}
+
 dvec3 directionTo(const DirectionalLight& light) {
   const double azimuth = radians(light.azimuth_deg), elevation = radians(light.elevation_deg);
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation),

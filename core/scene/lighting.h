@@ -136,6 +136,7 @@ const std::vector<std::string>& lightKinds();
 std::string kindOf(const Light& light);
 // A light as it is when nothing is said of it; an UnknownLight for a kind that is not in lightKinds().
 Light newLight(std::string id, std::string_view kind);
+bool castsShadows(const Light& light);                                // whether it is meant to
 const Light* lightOf(const Lighting& lighting, std::string_view id);  // null: there is none
 
 // Unit, from anywhere to the light.

@@ -100,4 +100,12 @@ RenderScene sceneAt(const SceneDocument& document, double time_s, const SceneSou
   return scene;
 }
 
+bool isLit(const RenderScene& scene) {
+  const auto& lights = scene.lighting.lights;
+  return (scene.environment && scene.lighting.environment.enabled) ||
+         std::any_of(lights.begin(), lights.end(), [](const Light& light) {
+           return light.enabled && !std::holds_alternative<UnknownLight>(light.kind);
+         });
+}
+
 }  // namespace beam

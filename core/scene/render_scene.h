@@ -64,6 +64,9 @@ struct RenderScene {
   bool operator==(const RenderScene&) const = default;
 };
 
+// Whether a panorama or a light that this version knows shines in it.
+bool isLit(const RenderScene& scene);
+
 struct OpenedMesh {
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const MeshTextures> textures = nullptr;

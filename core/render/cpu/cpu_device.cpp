@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/render/cpu/cpu_rasterizer.h"
 #include "core/render/cpu/cpu_resident_scene.h"
+#include "core/render/cpu/cpu_shadow_drawer.h"
 #include "core/render/cpu/cpu_training_ops.h"
 #include "core/render/cpu/splat_bvh.h"
 #include "core/render/device.h"
@@ -70,6 +71,7 @@ class CpuDevice final : public ComputeDevice {
     const std::lock_guard lock(mutex_);
     return makeFollowingTracer(desc, cloud, tree_);
   }
+  std::unique_ptr<ShadowDrawer> newShadowDrawer() override { return makeCpuShadowDrawer(); }
   std::unique_ptr<TrainingOps> newTrainingOps() override { return makeCpuTrainingOps(); }
 
  private:

@@ -46,6 +46,7 @@ class FakeDevice final : public ComputeDevice {
   std::unique_ptr<Rasterizer> newRasterizer(const RasterDesc&) override { return nullptr; }
   std::unique_ptr<ResidentScene> newResidentScene() override { return nullptr; }
   std::unique_ptr<Tracer> newTracer(const TracerDesc&, const GaussianCloud&) override { return nullptr; }
+  std::unique_ptr<ShadowDrawer> newShadowDrawer() override { return nullptr; }
   std::unique_ptr<TrainingOps> newTrainingOps() override { return nullptr; }
 };
 

@@ -116,9 +116,12 @@ TEST(LightTransfer, TurnsWithThePanorama) {
   sky.yaw_rad = kYaw;
   const PreparedLight own = prepareLight(sky);
   const LightTurn turned(plain, kYaw), by_itself(own, 0);
+  const TransferTables tables = turned.of(plain.transfer);
   for (std::uint64_t i = 0; i < 20; ++i) {
     const vec3 n = direction(i);
     const Visibility v = randomVisibility(i), a = turned.of(v), b = by_itself.of(v);
+    const vec3 open = irradiance(plain, turned(n)), seen = seenIrradiance(plain.transfer, turned(n), a, open);
+    EXPECT_LT(glm::length(seen - seenIrradiance(tables, turned(n), v, open)), 1e-4f * glm::length(open));
     for (int k = 0; k < kShCount; ++k) EXPECT_NEAR(a[k], b[k], 1e-6f);
     EXPECT_NEAR(valueOf(a, turned(n)), valueOf(v, n), 1e-5f);  // the function moves with the direction
   }

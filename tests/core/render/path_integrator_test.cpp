@@ -32,7 +32,7 @@ struct Furnace final : PathSurfaces {
     h.normal = -d;
     return h;
   }
-  float transmittance(vec3, vec3) const override { return 1; }
+  float transmittance(vec3, vec3, float) const override { return 1; }
 };
 
 // The plane y = 0 and nothing else; `shade` names the directions that something stands in.
@@ -46,7 +46,9 @@ struct Plane final : PathSurfaces {
     h.position_m = o + h.distance_m * d;
     return h;
   }
-  float transmittance(vec3 o, vec3 d) const override { return nearest(o, d, 0) || shade(d) ? 0.0f : 1.0f; }
+  float transmittance(vec3 o, vec3 d, float) const override {
+    return nearest(o, d, 0) || shade(d) ? 0.0f : 1.0f;
+  }
 };
 
 PathHit material(vec3 base_color, float roughness) {

@@ -179,7 +179,6 @@ TEST(CpuSceneRenderer, NamesWhatItDoesNotDraw) {
   scene.ground.enabled = true;
   scene.missing = {"mesh \"table.ply\": it is not there"};
   EXPECT_THAT(renderer->load(scene), ElementsAre("mesh \"table.ply\": it is not there",
-                                                 "light \"key\" (rectangle) is not drawn by the renderer cpu",
                                                  "light \"later\" (tube) is not drawn by the renderer cpu",
                                                  "meshes are not drawn by the renderer cpu",
                                                  "the ground is not drawn by the renderer cpu"));

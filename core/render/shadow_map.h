@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shadows of Gaussians in the light of one place (methods 7.3), in a form that blending without order draws:
+// nearest depth, and what gets through all. Casters are the Gaussians whose outward side is turned away from
+// the light, as far as that is known: where light leaves a body and not where it falls on it, which leaves
+// nothing for a surface to shadow itself with (BlendRules has the same rule for rays). World axes, metres.
+#pragma once
+
+#include <vector>
+
+#include "core/math/types.h"
+#include "core/scene/light_source.h"
+
+namespace beam {
+
+inline constexpr int kShadowSize = 512;          // texels a side
+inline constexpr float kShadowOffset_m = 0.02f;  // from a surface along its normal, as of visibility rays
+// Behind the nearest depth where casters may be the surface itself.
+inline constexpr float kShadowBias_m = 0.02f;
+inline constexpr float kCastingAlpha = 0.3f;  // of a Gaussian that a nearest depth is taken of
+
+struct Sphere {
+  vec3 center_m{0};
+  float radius_m = 0;
+};
+
+// How one square map looks at the scene: +X right, +Y down, +Z the way that light travels.
+struct ShadowView {
+  mat3 world_from_light{1};
+  vec3 origin_m{0};  // of a parallel view the middle of its map; else the light
+  bool parallel = false;
+  float half_width = 1;  // metres of a parallel view; else the tangent of half its angle
+  int size = kShadowSize;
+};
+
+// Of what casts in `sphere`: one view of all of it, however narrow or wide the light itself is; six faces of
+// a cube where it is inside the sphere, or so near that half the angle is over 60 degrees.
+std::vector<ShadowView> shadowViewsOf(const LightSource& source, const Sphere& sphere);
+
+// Row after row.
+struct ShadowTexels {
+  std::vector<float> front;    // depth along +Z from which on things are shadowed; infinity: nothing casts
+  std::vector<float> through;  // the product of 1 - alpha of all casters
+};
+
+struct ShadowMap {
+  std::vector<ShadowView> views;
+  std::vector<ShadowTexels> texels;  // of each
+  float bias_m = 0;
+
+  // The share of light that comes to a point, [0, 1]: over four texels, each compared for itself.
+  float lightAt(vec3 x_m) const;
+};
+
+}  // namespace beam
