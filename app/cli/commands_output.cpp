@@ -18,6 +18,7 @@
 #include "core/scene/channel.h"
 #include "core/work/export_frames.h"
 #include "core/work/render_frames.h"
+#include "core/work/render_look.h"
 #include "core/work/selection.h"
 
 namespace beam {
@@ -30,10 +31,11 @@ struct RenderFlags {
   std::string project, channels = "rgb", cameras, frames = "all", environment;
   std::string frame_of = "capture", out;
   std::vector<std::string> set;
-  std::string renderer = "cpu", size;
+  std::string renderer = "cpu", size, look;
   int samples = ReferenceOptions{}.samples;
   bool no_denoise = false, tells_samples = false;
-  bool names_cameras = false, layers = false, skip_existing = false, force = false, strict = false;
+  bool names_cameras = false, names_channels = false, layers = false, skip_existing = false, force = false,
+       strict = false;
   DeviceChoice device;
 };
 
@@ -98,8 +100,44 @@ std::string writtenText(const RenderFramesOutcome& outcome, const RenderFlags& f
                                                      countText(outcome.kept, "file was", "files were")));
 }
 
+// What says how pictures are lit or what they show, where the look does.
+void refuseBesideLook(const RenderFlags& flags) {
+  const std::pair<const char*, bool> typed[] = {{"--channels", flags.names_channels},
+                                                {"--environment", !flags.environment.empty()},
+                                                {"--set", !flags.set.empty()},
+                                                {"--layers", flags.layers},
+                                                {"--skip-existing", flags.skip_existing}};
+  for (const auto& [flag, is_typed] : typed) {
+    if (is_typed)
+      throw Error(Error::Kind::Usage,
+                  fmt::format("{} does not go with --look, which says itself what is drawn and how", flag));
+  }
+}
+
+int runLook(const RenderFlags& flags, const Project& project, CommandContext& context) {
+  refuseBesideLook(flags);
+  RenderLookRequest request{.project = project,
+                            .look = chosenLook(project, flags.look),
+                            .cameras = flags.names_cameras ? flags.cameras : usualCameras(project.capture()),
+                            .frames = flags.frames,
+                            .out = flags.out,
+                            .force = flags.force,
+                            .strict = flags.strict};
+  if (!flags.size.empty()) request.size = parsePictureSize(flags.size);
+  const std::unique_ptr<SceneRenderer> renderer = rendererOf(flags, project, makeDevice(flags.device));
+  Progress progress(context.stop, context.console.listener());
+  const RenderLookOutcome outcome = renderLook(request, *renderer, progress);
+  context.console.endProgress();
+  context.console.print(fmt::format("wrote {} of {} and {} to \"{}\"", outcome.folder,
+                                    countText(outcome.cameras, "camera"), countText(outcome.frames, "frame"),
+                                    flags.out));
+  tellInterpolated(outcome.interpolated, context.console);
+  return 0;
+}
+
 int runRender(const RenderFlags& flags, CommandContext& context) {
   Project project = Project::open(flags.project, context.services.pipeline);
+  if (!flags.look.empty()) return runLook(flags, project, context);
   for (const std::string& assignment : flags.set) setForPictures(project, assignment);
   RenderFramesRequest request{
       .project = project,
@@ -185,6 +223,11 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
           "Axes and unit of normals, depth and meshes: the capture's, or the world's (+Y up, metres)")
       ->type_name("NAME");
   command
+      ->add_option("--look", flags->look,
+                   "Lit and shown as a look says, in place of channels: the name of one of the project, or a "
+                   "file; see beam help looks")
+      ->type_name("NAME|FILE");
+  command
       ->add_option("--renderer", flags->renderer,
                    "cpu: in real time; reference: light followed path by path, which that is judged by, with "
                    "the channels direct, indirect and variance")
@@ -215,12 +258,13 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
-  command->callback(
-      [flags, &context, cameras = command->get_option("--cameras"), samples = command->get_option("--spp")] {
-        flags->names_cameras = cameras->count() > 0;
-        flags->tells_samples = samples->count() > 0;
-        context.action = [flags, &context] { return runRender(*flags, context); };
-      });
+  command->callback([flags, &context, cameras = command->get_option("--cameras"),
+                     samples = command->get_option("--spp"), channels = command->get_option("--channels")] {
+    flags->names_channels = channels->count() > 0;
+    flags->names_cameras = cameras->count() > 0;
+    flags->tells_samples = samples->count() > 0;
+    context.action = [flags, &context] { return runRender(*flags, context); };
+  });
 }
 
 void addExportCommand(CLI::App& app, CommandContext& context) {

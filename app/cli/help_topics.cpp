@@ -9,6 +9,7 @@
 #include "app/cli/help_page.h"
 #include "app/cli/json_keys.h"
 #include "core/scene/channel.h"
+#include "core/scene/look.h"
 #include "core/work/export_frames.h"
 
 namespace beam {
@@ -77,9 +78,12 @@ std::string filesText() {
       2);
   page.blank();
   for (const ChannelInfo& channel : channels()) page.row(folderText(channel), channelText(channel));
+  page.row("look_<name>",
+           "In place of channels, with --look: as the look's view transform says, PNG with what is behind or "
+           "straight alpha, or EXR, half float, R G B A, premultiplied. See beam help looks.");
   page.blank();
   page.paragraph(
-      "Every EXR has either R, G and B or one channel Y, without layers, so that every reader takes "
+      "Every other EXR has either R, G and B or one channel Y, without layers, so that every reader takes "
       "it. Values are never divided by alpha. With --layers a camera and frame have one linear EXR, "
       "OUT/layers/<camera>/<frame>.exr: R G B A of rgb, and a layer a channel, such as base_color.R, "
       "ao.Y, normal.X, depth.Z, relight_<panorama>.R.",
@@ -253,6 +257,55 @@ std::string framesText() {
   return page.text();
 }
 
+// Numbers with their range, words with their choices.
+std::string valuesText(const FieldInfo& info) {
+  if (!info.choices.empty()) return fmt::format("; {}", fmt::join(info.choices, ", "));
+  std::string text = info.unit.empty() ? std::string() : fmt::format("; {}", info.unit);
+  if (std::isfinite(info.min) && std::isfinite(info.max))
+    text += fmt::format("; {:g} to {:g}", info.min, info.max);
+  else if (std::isfinite(info.min))
+    text += fmt::format("; {:g} or more", info.min);
+  return text;
+}
+
+void fieldRows(const std::vector<Field>& fields, HelpPage& page) {
+  for (const Field& f : fields) {
+    std::string help = f.info.help;
+    if (help.ends_with('.')) help.pop_back();
+    page.row(f.info.name, fmt::format("{}{}.", help, valuesText(f.info)));
+  }
+}
+
+std::string looksText() {
+  HelpPage page(26);
+  page.paragraph(
+      "A look says how a subject is lit and shown: a panorama, lamps, exposure, what is behind. It is a JSON "
+      "file, or one of the project's by its name; beam render P.beam --look NAME|FILE draws it into "
+      "OUT/look_<name>/<camera>/<frame>.png, or .exr (R G B A, premultiplied) where view_transform is raw. "
+      "What a file does not say is as it is listed here.");
+  page.heading("A small one");
+  page.paragraph(
+      "{\"format\": {\"name\": \"beam-look\", \"major\": 1, \"minor\": 0}, \"name\": \"key\", "
+      "\"environment\": "
+      "{\"gain\": 0.3}, \"lights\": [{\"id\": \"sun\", \"kind\": \"directional\", \"azimuth_deg\": 60, "
+      "\"elevation_deg\": 40}]}",
+      2);
+  page.heading("Of the look");
+  fieldRows(fieldsOf(Look{}), page);
+  for (const std::string& kind : lightKinds()) {
+    page.heading(fmt::format("Of a light of the kind {}, beside its id", kind));
+    fieldRows(fieldsOf(newLight("light", kind)), page);
+  }
+  page.heading("Over time");
+  page.paragraph(
+      "\"curves\" drives numbers and switches by their paths, lights.sun.intensity or "
+      "environment.rotation_deg: {\"keys\": [{\"time_s\": 0, \"value\": 0}, {\"time_s\": 2, \"value\": "
+      "90}]}. "
+      "A frame has the time of its place in the capture over the rate.",
+      2);
+  return page.text();
+}
+
 std::string settingsText() {
   HelpPage page(22);
   page.paragraph(
@@ -310,6 +363,7 @@ const std::vector<HelpTopic>& helpTopics() {
       {"captures", "what the folder of a capture looks like, and what is read", capturesText},
       {"files", "what render and export write, and what a project holds", filesText},
       {"frames", "how frames and cameras are chosen; takes", framesText},
+      {"looks", "light, lamps, exposure and background of render --look", looksText},
       {"settings", "--set, --preset, and where values come from", settingsText},
       {"environment", "variables of the shell; axes of panoramas of the light", environmentText},
       {"json", "keys of what --json prints", jsonText},

@@ -319,4 +319,11 @@ void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& imag
   writeEncoded(path, m, false, notes);
 }
 
+void writePng(const std::filesystem::path& path, const Image<u8vec4>& image, const FileNotes& notes) {
+  const cv::Mat rgba(image.height, image.width, CV_8UC4, const_cast<u8vec4*>(image.pixels.data()));
+  cv::Mat bgra;
+  cv::cvtColor(rgba, bgra, cv::COLOR_RGBA2BGRA);
+  writeEncoded(path, bgra, image.encoding == Encoding::Srgb, notes);
+}
+
 }  // namespace beam

@@ -53,6 +53,8 @@ std::vector<std::string> exrChannels(const std::filesystem::path& path);
 void writePng(const std::filesystem::path& path, const Image<u8vec3>& image, const FileNotes& notes = {});
 void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image,
               const FileNotes& notes = {});
+// With straight alpha.
+void writePng(const std::filesystem::path& path, const Image<u8vec4>& image, const FileNotes& notes = {});
 
 // A JPEG picture in memory; quality in [0, 100].
 std::vector<std::byte> encodeJpeg(const Image<u8vec3>& image, int quality);
