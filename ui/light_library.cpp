@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "core/io/image_file.h"
-#include "core/scene/environment.h"
+#include "core/stages/panorama_file.h"
 
 namespace beam {
 
@@ -64,7 +63,7 @@ void LightLibrary::choose(int index) {
     std::shared_ptr<const Environment> light;
     QString error;
     try {
-      auto read = std::make_shared<const Environment>(makeEnvironment(readRadiance(file)));
+      auto read = openPanorama(file);
       prepare(read, new_renderer);
       light = std::move(read);
     } catch (const std::exception& e) {  // the border of this thread: said in the window

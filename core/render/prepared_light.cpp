@@ -219,7 +219,7 @@ Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min
 
 PreparedLight prepareLight(const Environment& environment, const Progress& progress) {
   PreparedLight light;
-  light.radiance = environment.radiance;
+  light.radiance = reducedPanorama(environment.radiance, kWidestLight, kWidestLight / 2, progress);
   for (vec3& p : light.radiance.pixels) p *= environment.gain;
   light.yaw_rad = environment.yaw_rad;
   light.irradiance_sh = irradianceSh(Environment{light.radiance});

@@ -30,6 +30,9 @@ struct PreparedLight {
   TransferTables transfer;  // for surfaces whose visibility is known
 };
 
+// Of a panorama that light falls from, at most: a wider one lights as its reduced one does.
+inline constexpr int kWidestLight = 4096;
+
 // Throws Cancelled when the progress is stopped.
 PreparedLight prepareLight(const Environment& environment, const Progress& progress = Progress{});
 

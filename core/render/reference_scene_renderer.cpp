@@ -15,6 +15,7 @@
 #include "core/math/color.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/render/gaussian_surfaces.h"
+#include "core/render/prepared_light.h"
 #include "core/scene/gbuffer.h"
 
 namespace beam {
@@ -317,8 +318,14 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     if (!surfaces_) surfaces_ = std::make_unique<GaussianSurfaces>(instances_, *device_);
     progress.check();
     if (sampler_ || !panorama_) return;
+    std::shared_ptr<const Environment> light = panorama_;
+    if (light->radiance.width > kWidestLight) {
+      light = std::make_shared<const Environment>(
+          Environment{reducedPanorama(light->radiance, kWidestLight, kWidestLight / 2, progress),
+                      light->yaw_rad, light->gain});
+    }
     sampler_ = std::make_unique<EnvironmentSampler>(
-        *panorama_, static_cast<float>(light_.rotation_deg * kPi / 180), static_cast<float>(light_.gain));
+        *light, static_cast<float>(light_.rotation_deg * kPi / 180), static_cast<float>(light_.gain));
     progress.check();
   }
 

@@ -21,6 +21,7 @@
 #include "core/scene/environment.h"
 #include "core/scene/frame_list.h"
 #include "core/scene/transform.h"
+#include "core/stages/panorama_file.h"
 #include "core/stages/picture_files.h"
 #include "core/stages/picture_source.h"
 
@@ -120,8 +121,7 @@ class ChannelWriter {
       logWarning("{}", lost);
     for (std::size_t e = 0; isLit(request) && e < request.environments.size(); ++e) {
       const fs::path& file = request.environments[e];
-      const Light light{std::make_shared<const Environment>(makeEnvironment(readRadiance(file))),
-                        request.written_by.empty() ? Digest{} : digestOfFile(file)};
+      const Light light{openPanorama(file), request.written_by.empty() ? Digest{} : digestOfFile(file)};
       lights_[relitName(file)] = light;
       for (const char* part : {kDirectChannel, kIndirectChannel, kVarianceChannel}) lights_[part] = light;
     }

@@ -11,12 +11,12 @@
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/io/file.h"
-#include "core/io/image_file.h"
 #include "core/io/look_json.h"
 #include "core/io/written_by.h"
 #include "core/pipeline/output_target.h"
 #include "core/scene/channel.h"
 #include "core/stages/look_picture.h"
+#include "core/stages/panorama_file.h"
 #include "core/stages/project_sequence.h"
 #include "core/work/last_solved.h"
 #include "core/work/selection.h"
@@ -34,7 +34,8 @@ std::string namesOfLooks(const Project& project) {
   return names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "));
 }
 
-std::shared_ptr<const Environment> panoramaOf(const RenderLookRequest& request, const Project& project) {
+std::shared_ptr<const Environment> panoramaOf(const RenderLookRequest& request, const Project& project,
+                                              const Progress& progress) {
   const EnvironmentLight& light = request.look.look.lighting.environment;
   const bool ever = light.enabled || request.look.look.curves.contains("environment.enabled");
   if (!ever) return nullptr;
@@ -50,18 +51,18 @@ std::shared_ptr<const Environment> panoramaOf(const RenderLookRequest& request, 
                               request.look.look.name, light.file.absolute));
     }
   }
-  return file ? std::make_shared<const Environment>(makeEnvironment(readRadiance(*file))) : nullptr;
+  return file ? openPanorama(*file, progress) : nullptr;
 }
 
 class LookWriter {
  public:
   LookWriter(const RenderLookRequest& request, const Project& project, const GaussianSequence& sequence,
-             SceneRenderer& renderer)
+             SceneRenderer& renderer, const Progress& progress)
       : request_(request),
         look_(request.look.look),
         sequence_(sequence),
         renderer_(renderer),
-        panorama_(panoramaOf(request, project)) {}
+        panorama_(panoramaOf(request, project, progress)) {}
 
   void picture(FrameIndex frame, const std::shared_ptr<const GaussianFrame>& gaussians, const View& view,
                const fs::path& file, Progress& progress) {
@@ -172,7 +173,7 @@ RenderLookOutcome renderLook(const RenderLookRequest& request, SceneRenderer& re
   std::vector<fs::path> files;
   for (const View& view : views)
     for (const FrameIndex frame : frames) files.push_back(fileOf(view, frame));
-  LookWriter writer(request, project, *sequence, renderer);
+  LookWriter writer(request, project, *sequence, renderer, progress);
   writer.requireLight();
   requireFolderTarget(request.out, files, {kCommand, request.force, inputFolders(project)});
   for (const std::string& remark : remarks(look)) logWarning("look \"{}\": {}", look.name, remark);

@@ -109,6 +109,14 @@ TEST(LightTransfer, HighlightsSeeWhatLiesAroundTheMirrorDirection) {
   }
 }
 
+TEST(PreparedLight, OfAWidePanoramaIsThatOfItsReducedOne) {
+  Image<vec3> wide(kWidestLight + 4, kWidestLight / 2 + 2, vec3(0.5f));
+  wide(17, 900) = vec3(1000);
+  const PreparedLight light = prepareLight(makeEnvironment(wide));
+  EXPECT_EQ(light.radiance.width, kWidestLight);
+  EXPECT_EQ(light.radiance.pixels, reducedPanorama(wide, kWidestLight, kWidestLight / 2).pixels);
+}
+
 TEST(LightTransfer, TurnsWithThePanorama) {
   Environment sky = lampedSky();
   const PreparedLight plain = prepareLight(sky);
