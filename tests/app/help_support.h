@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A folder as somebody has it who tries the examples of the help: the capture CAPTURE of four frames, the
-// panorama studio.exr and the solved project Take.beam, with cameras held out.
+// panorama studio.exr, the look key.json and the solved project Take.beam, with cameras held out.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -42,10 +42,17 @@ class ExampleHouse {
     namespace fs = std::filesystem;
     fs::create_directory_symlink(folder_.path() / "CAPTURE", folder / "CAPTURE");
     fs::copy(folder_.path() / "studio.exr", folder / "studio.exr");
+    std::ofstream(folder / "key.json") << smallLook();
     fs::copy(folder_.path() / "Take.beam", folder / "Take.beam", fs::copy_options::recursive);
   }
 
  private:
+  // As beam help looks shows it.
+  std::string smallLook() const {
+    const std::string text = typed(folder_.path(), "beam help looks", bin()).out;
+    const std::size_t begin = text.find('{'), end = text.find("\n\n", begin);
+    return text.substr(begin, end - begin);
+  }
   // Without the true mesh: to find the distance to the little that so few steps make takes minutes.
   ExampleHouse() {
     namespace fs = std::filesystem;
