@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 
 #include "app/cli/exit_codes.h"
 #include "app/cli/help_page.h"
 #include "app/cli/json_keys.h"
+#include "core/base/field_text.h"
 #include "core/scene/channel.h"
 #include "core/scene/look.h"
 #include "core/work/export_frames.h"
@@ -257,22 +259,14 @@ std::string framesText() {
   return page.text();
 }
 
-// Numbers with their range, words with their choices.
-std::string valuesText(const FieldInfo& info) {
-  if (!info.choices.empty()) return fmt::format("; {}", fmt::join(info.choices, ", "));
-  std::string text = info.unit.empty() ? std::string() : fmt::format("; {}", info.unit);
-  if (std::isfinite(info.min) && std::isfinite(info.max))
-    text += fmt::format("; {:g} to {:g}", info.min, info.max);
-  else if (std::isfinite(info.min))
-    text += fmt::format("; {:g} or more", info.min);
-  return text;
-}
-
 void fieldRows(const std::vector<Field>& fields, HelpPage& page) {
   for (const Field& f : fields) {
-    std::string help = f.info.help;
-    if (help.ends_with('.')) help.pop_back();
-    page.row(f.info.name, fmt::format("{}{}.", help, valuesText(f.info)));
+    const std::string value = toText(f.value);
+    std::string expected = expectedText(f.info, f.value);
+    if (!expected.empty())
+      expected[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(expected[0])));
+    page.row(f.info.name,
+             fmt::format("{} {}; else {}.", f.info.help, expected, value.empty() ? "empty" : value));
   }
 }
 
@@ -282,7 +276,7 @@ std::string looksText() {
       "A look says how a subject is lit and shown: a panorama, lamps, exposure, what is behind. It is a JSON "
       "file, or one of the project's by its name; beam render P.beam --look NAME|FILE draws it into "
       "OUT/look_<name>/<camera>/<frame>.png, or .exr (R G B A, premultiplied) where view_transform is raw. "
-      "What a file does not say is as it is listed here.");
+      "What a file does not say is as it is listed here behind \"else\".");
   page.heading("A small one");
   page.paragraph(
       "{\"format\": {\"name\": \"beam-look\", \"major\": 1, \"minor\": 0}, \"name\": \"key\", "

@@ -90,7 +90,7 @@ class CpuSceneRenderer final : public SceneRenderer {
     RenderedPicture picture;
     picture.camera = camera;
     for (const ChannelInfo& channel : channels) {
-      picture.channels.push_back({channel.id, valuesOf(channel), 0});
+      picture.channels.push_back({channel.id, valuesOf(channel, progress), 0});
       progress.check();
     }
     on_picture(std::move(picture));
@@ -116,8 +116,8 @@ class CpuSceneRenderer final : public SceneRenderer {
 
   bool transfers() const { return lighting_.environment.shadows != kOcclusionAlone; }
 
-  std::shared_ptr<const Planes> valuesOf(const ChannelInfo& channel) {
-    if (channel.id == kRelightChannel) return lit();
+  std::shared_ptr<const Planes> valuesOf(const ChannelInfo& channel, const Progress& progress) {
+    if (channel.id == kRelightChannel) return lit(progress);
     auto values = pool_.take();
     const auto drawn = drawnChannels().find(channel.id);
     if (drawn != drawnChannels().end())
@@ -128,16 +128,22 @@ class CpuSceneRenderer final : public SceneRenderer {
   }
 
   // Past lamps that were turned, what the panorama gives stays.
-  std::shared_ptr<const Planes> lit() {
-    const std::vector<ShadedLamp>& lamps = lamps_.of(lighting_, *resident_);
+  std::shared_ptr<const Planes> lit(const Progress& progress) {
     std::shared_ptr<const Planes> by_panorama = light_ ? litByPanorama() : nullptr;
-    if (lamps.empty() && by_panorama) return by_panorama;
-    auto values = pool_.take();
-    if (by_panorama)
-      *values = *by_panorama;
-    else
-      *values = Planes(camera_.width, camera_.height, 3);
-    view_->addLamps(lamps, *values);
+    std::shared_ptr<Planes> values;
+    const auto begin = [&] {
+      values = pool_.take();
+      if (by_panorama)
+        *values = *by_panorama;
+      else
+        *values = Planes(camera_.width, camera_.height, 3);
+    };
+    lamps_.forEach(lighting_, *resident_, progress, [&](const std::vector<ShadedLamp>& lamps) {
+      if (!values) begin();
+      view_->addLamps(lamps, *values);
+    });
+    if (!values && by_panorama) return by_panorama;
+    if (!values) begin();
     return values;
   }
 

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/render/shadow_map.h"
 #include "core/scene/light_source.h"
 #include "core/scene/thin_axis.h"
 
@@ -26,7 +28,7 @@ std::string nameOf(const Light& light) { return light.title.empty() ? light.id :
 
 constexpr std::size_t kNearest = 16;
 
-// Whether most of the Gaussians next to it turn their outer sides away from it; false where sides are
+// Whether most of the dense Gaussians next to it turn their outer sides away from it; false where sides are
 // unknown.
 bool isInside(const RenderInstance& instance, vec3 world_m) {
   const Attribute* side = attributeNamed(*instance.attributes, kNormalSideName);
@@ -36,6 +38,7 @@ bool isInside(const RenderInstance& instance, vec3 world_m) {
   std::array<std::pair<float, std::size_t>, kNearest> nearest;
   nearest.fill({std::numeric_limits<float>::infinity(), 0});
   for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.opacity[i] < kCastingAlpha) continue;
     const vec3 d = cloud.position_m[i] - x_m;
     const float distance2 = glm::dot(d, d);
     if (distance2 >= nearest.back().first) continue;
@@ -43,6 +46,7 @@ bool isInside(const RenderInstance& instance, vec3 world_m) {
     for (std::size_t k = kNearest - 1; k > 0 && nearest[k] < nearest[k - 1]; --k)
       std::swap(nearest[k], nearest[k - 1]);
   }
+  if (!std::isfinite(nearest.back().first)) return false;
   const auto away = std::count_if(nearest.begin(), nearest.end(), [&](const auto& n) {
     return side->values[n.second] * glm::dot(thinAxis(cloud, n.second), x_m - cloud.position_m[n.second]) < 0;
   });

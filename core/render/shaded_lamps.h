@@ -2,15 +2,20 @@
 // The lamps of a scene with the shadows that its Gaussians cast, kept while a lamp stands where it stood.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/render/shadow_drawer.h"
 #include "core/scene/lighting.h"
 
 namespace beam {
 
 class ComputeDevice;
+
+inline constexpr std::size_t kMostShadowBytes = std::size_t(256) << 20;  // of maps that are there at a time
 
 struct ShadedLamp {
   LightSource source;
@@ -21,9 +26,12 @@ class ShadedLamps {
  public:
   explicit ShadedLamps(ComputeDevice& device);
 
-  // Those that are enabled, in their order. Valid until the next call. `scene` is the one of the call before
-  // unless forget() came between.
-  const std::vector<ShadedLamp>& of(const Lighting& lighting, const ResidentScene& scene);
+  // Those that are enabled and shine, in their order, as many at a time as their maps may take memory:
+  // usually all at once, and kept then. `scene` is the one of the call before unless forget() came between.
+  // Throws Cancelled when the progress is stopped.
+  using OnLamps = std::function<void(const std::vector<ShadedLamp>&)>;
+  void forEach(const Lighting& lighting, const ResidentScene& scene, const Progress& progress,
+               const OnLamps& on_lamps);
   void forget();
 
  private:

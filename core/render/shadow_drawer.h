@@ -11,7 +11,7 @@ namespace beam {
 class ShadowDrawer {
  public:
   virtual ~ShadowDrawer() = default;
-  // Around all Gaussians, as far as they can cast.
+  // Around all Gaussians, as far as they can cast a shadow that is seen.
   virtual Sphere boundsOf(const ResidentScene& scene) = 0;
   // Same bits for any number of threads and any instruction set.
   virtual void draw(const ResidentScene& scene, const ShadowView& view, ShadowTexels& texels) = 0;

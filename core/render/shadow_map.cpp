@@ -51,6 +51,12 @@ std::vector<ShadowView> shadowViewsOf(const LightSource& source, const Sphere& s
            .half_width = sine / std::sqrt(1 - sine * sine)}};
 }
 
+std::size_t ShadowMap::bytes() const {
+  std::size_t sum = 0;
+  for (const ShadowTexels& t : texels) sum += sizeof(float) * (t.front.size() + t.through.size());
+  return sum;
+}
+
 float ShadowMap::lightAt(vec3 x_m) const {
   if (views.empty()) return 1;
   const std::size_t i = views.size() == 1 ? 0 : static_cast<std::size_t>(faceToward(x_m - views[0].origin_m));

@@ -5,6 +5,7 @@
 // nothing for a surface to shadow itself with (BlendRules has the same rule for rays). World axes, metres.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/math/types.h"
@@ -47,6 +48,7 @@ struct ShadowMap {
   std::vector<ShadowTexels> texels;  // of each
   float bias_m = 0;
 
+  std::size_t bytes() const;
   // The share of light that comes to a point, [0, 1]: over four texels, each compared for itself.
   float lightAt(vec3 x_m) const;
 };

@@ -58,7 +58,8 @@ std::vector<LightSource> placesOf(const RectangleLight& l) {
     places.push_back(
         {.position_m = vec3(l.position_m + world_from_light * dvec3(u * l.width_m, v * l.height_m, 0)),
          .strength = strengthOf(l.intensity * share_m2, l.color),
-         .axis = vec3(-world_from_light[2])});
+         .axis = vec3(-world_from_light[2]),
+         .area_m2 = static_cast<float>(share_m2)});
   }
   return places;
 }
@@ -79,7 +80,8 @@ ArrivingLight arrivingAt(const LightSource& s, vec3 x_m) {
   if (distance_m > 0) a.toward = to / distance_m;
   a.distance_m = distance_m;
   const float near = std::max(distance_m, kNearestLight_m);
-  float share = windowOf(distance_m, s.range_m) / (near * near);
+  // Exact on the axis of a disc; without an area the square of the distance.
+  float share = windowOf(distance_m, s.range_m) / (near * near + s.area_m2 / kPi);
   if (s.axis != vec3(0)) {
     const float cosine = std::clamp(-glm::dot(a.toward, s.axis), -1.0f, 1.0f);
     const float fade = s.cone ? fadeOut(std::acos(cosine), s.inner_rad, s.outer_rad) : 0;

@@ -25,6 +25,8 @@ struct LightSource {
   // With an axis. A cone: whole up to `inner_rad` from it, nothing past `outer_rad`, of which the inner one
   // is never more. Else it is flat: the cosine with the axis weakens it.
   bool cone = false;
+  float area_m2 =
+      0;  // that a flat one stands for: a disc, which near by is brighter in no direction than itself
   float inner_rad = 0, outer_rad = 0;
 
   bool operator==(const LightSource&) const = default;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* kColorBackground = "color";
 constexpr std::size_t kRows = 16;
+constexpr float kBrightest = 65504;  // of half precision
 
 // Radiance behind a pixel.
 class Backdrop {
@@ -45,6 +46,9 @@ class Backdrop {
   vec3 color_{0};
 };
 
+// Light without end is as bright as a file can say.
+float storable(float light) { return std::isfinite(light) ? std::min(light, kBrightest) : kBrightest; }
+
 // Premultiplied, 4 planes, with what is behind.
 Planes exposed(const Planes& relit, const Planes& alpha, const Look& look, const Backdrop& backdrop) {
   Planes out(relit.width, relit.height, 4);
@@ -56,7 +60,7 @@ Planes exposed(const Planes& relit, const Planes& alpha, const Look& look, const
         const float a = std::clamp(alpha.plane(0)[i], 0.0f, 1.0f);
         vec3 light(relit.plane(0)[i], relit.plane(1)[i], relit.plane(2)[i]);
         if (backdrop.isThere()) light += (1 - a) * backdrop.at(x, static_cast<int>(y));
-        for (int c = 0; c < 3; ++c) out.plane(c)[i] = exposure * light[c];
+        for (int c = 0; c < 3; ++c) out.plane(c)[i] = storable(exposure * light[c]);
         out.plane(3)[i] = backdrop.isThere() ? 1 : a;
       }
     }

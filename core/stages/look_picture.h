@@ -25,7 +25,7 @@ struct Behind {
 
 // `relit`: 3 planes, scene-linear, premultiplied; `alpha`: 1. `look`: of the moment, without curves. PNG is 8
 // bits, sRGB as the view transform says, with straight alpha where nothing is behind; EXR half precision, R G
-// B A, premultiplied, scene-linear times the exposure. Throws Error{Storage}.
+// B A, premultiplied, scene-linear times the exposure, at most 65504. Throws Error{Storage}.
 void writeLookPicture(const std::filesystem::path& file, const Planes& relit, const Planes& alpha,
                       const Look& look, const Behind& behind, const FileNotes& notes);
 

@@ -45,10 +45,13 @@ std::shared_ptr<const Environment> panoramaOf(const RenderLookRequest& request, 
   } else {
     file = resolve(light.file, request.look.folder);
     if (!file) {
-      throw Error(Error::Kind::Data,
-                  fmt::format("the panorama of the look \"{}\" is gone: expected it at \"{}\"; put it back, "
-                              "or name another in the look",
-                              request.look.look.name, light.file.absolute));
+      throw Error(
+          Error::Kind::Data,
+          fmt::format("the panorama of the look \"{}\" is gone: expected it at \"{}\"; put it back, "
+                      "or name another in the look",
+                      request.look.look.name,
+                      light.file.absolute.empty() ? (request.look.folder / light.file.relative).string()
+                                                  : light.file.absolute));
     }
   }
   return file ? openPanorama(*file, progress) : nullptr;
@@ -174,9 +177,11 @@ RenderLookOutcome renderLook(const RenderLookRequest& request, SceneRenderer& re
   for (const View& view : views)
     for (const FrameIndex frame : frames) files.push_back(fileOf(view, frame));
   LookWriter writer(request, project, *sequence, renderer, progress);
+  for (const std::string& remark : remarks(look)) logWarning("look \"{}\": {}", look.name, remark);
+  if (look.camera_path.kind != CameraPath{}.kind)
+    logWarning("look \"{}\": its camera path is not followed: the cameras stand", look.name);
   writer.requireLight();
   requireFolderTarget(request.out, files, {kCommand, request.force, inputFolders(project)});
-  for (const std::string& remark : remarks(look)) logWarning("look \"{}\": {}", look.name, remark);
   last.tell();
   progress.expect(static_cast<std::int64_t>(files.size()));
   for (const FrameIndex frame : frames) {

@@ -17,6 +17,7 @@ namespace {
 constexpr int kBand = 16;           // rows
 constexpr std::size_t kGrain = 64;  // packs of 16 Gaussians
 constexpr float kReach = 3;         // standard deviations that a Gaussian reaches, at most
+constexpr float kFaint = 0.1f;      // opacity of Gaussians that no sphere is drawn around
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 const CpuResidentScene& ofCpu(const ResidentScene& scene) {
@@ -33,13 +34,19 @@ class CpuShadowDrawer final : public ShadowDrawer {
     const auto at = [&](int plane, std::size_t i) {
       return vec3(g.plane(plane)[i], g.plane(plane + 1)[i], g.plane(plane + 2)[i]);
     };
+    // Stray faint ones would make every texel larger; where all are faint, all count.
+    const float* opacity = g.plane(PlaneLayout::kOpacity);
+    const bool any = std::any_of(opacity, opacity + g.count, [](float o) { return o >= kFaint; });
+    const auto counts = [&](std::size_t i) { return !any || opacity[i] >= kFaint; };
     vec3 low(kNothing), high(-kNothing);
     for (std::size_t i = 0; i < g.count; ++i) {
+      if (!counts(i)) continue;
       low = glm::min(low, at(PlaneLayout::kPosition, i));
       high = glm::max(high, at(PlaneLayout::kPosition, i));
     }
     Sphere s{.center_m = 0.5f * (low + high)};
     for (std::size_t i = 0; i < g.count; ++i) {
+      if (!counts(i)) continue;
       const vec3 scale = at(PlaneLayout::kScale, i);
       s.radius_m = std::max(s.radius_m, glm::length(at(PlaneLayout::kPosition, i) - s.center_m) +
                                             kReach * std::max({scale.x, scale.y, scale.z}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lamps and their shadows: maps against rays, in real time against the reference, and equal bits.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -294,6 +295,22 @@ TEST(Lamps, WithoutShadowsReachWhatOthersDoNot) {
   const auto reference =
       newReferenceSceneRenderer(device, {.samples = 16, .denoise = false, .offset_m = kShadowOffset_m});
   EXPECT_NEAR(sumOf(drawn(*reference, open, kDirectChannel)) / lit, 1, 0.03);
+}
+
+// More maps than are kept at a time: six of each of eight places.
+TEST(Lamps, OfManyMapsAddUpAsOneByOne) {
+  const auto renderer = newCpuSceneRenderer(makeCpuDevice());
+  std::vector<Light> boxes;
+  std::vector<float> sum;
+  for (int i = 0; i < 4; ++i) {
+    const RectangleLight box{.position_m = dvec3(0.5, 0.6 + 0.1 * i, 0.2), .target_m = dvec3(0)};
+    boxes.push_back(lampOf(box, fmt::format("box{}", i).c_str()));
+    const Planes one = drawn(*renderer, litBy({boxes.back()}));
+    sum.resize(one.values.size());
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += one.values[k];
+  }
+  const Planes all = drawn(*renderer, litBy(boxes));
+  for (std::size_t k = 0; k < sum.size(); ++k) ASSERT_NEAR(all.values[k], sum[k], 1e-4f * (1 + sum[k]));
 }
 
 TEST(Lamps, InsideTheSubjectAreNamed) {

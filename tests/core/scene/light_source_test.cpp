@@ -102,6 +102,8 @@ TEST(LightSource, OfARectangleAddsUpToItsRadiance) {
   EXPECT_NEAR(sum(vec3(0), {0, 1, 0}), closed(2), 0.01 * closed(2));
   EXPECT_NEAR(sum({0, 1.4f, 0}, {0, 1, 0}), closed(0.6), 0.04 * closed(0.6));
   EXPECT_EQ(sum({0, 3, 0}, {0, -1, 0}), 0);  // behind it
+  for (const LightSource& s : sources)       // no surface is lit more than by a sky of its radiance
+    EXPECT_LE(arriving(s, s.position_m - vec3(0, 1e-3f, 0)), 5 * kPi);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/base/error.h"
 #include "core/io/image_file.h"
 #include "core/math/color.h"
@@ -92,6 +94,20 @@ TEST_F(LookPicture, IsRawInOpenExr) {
   EXPECT_NEAR(p.plane(0)[3], 0.05f, 1e-4f);  // premultiplied
   EXPECT_EQ(p.plane(1)[3], 0.5f);
   EXPECT_EQ(p.plane(1)[30], 0);
+}
+
+TEST_F(LookPicture, IsFiniteHoweverBrightItsLightIs) {
+  Look look;
+  look.view_transform = kRawTransform;
+  view_.relit.plane(0)[3] = std::numeric_limits<float>::infinity();
+  view_.relit.plane(0)[4] = std::numeric_limits<float>::quiet_NaN();
+  view_.relit.plane(0)[5] = 1e30f;
+  const Planes p = readExr(written(look), {"R"});
+  for (int x = 3; x < 6; ++x) EXPECT_EQ(p.plane(0)[x], 65504) << x;
+  for (const char* name : {"standard", "neutral"}) {
+    look.view_transform = name;
+    EXPECT_GT(readPhoto(written(look))(3, 0).x, 250) << name;
+  }
 }
 
 TEST_F(LookPicture, IsOfAViewTransformThatIsDrawn) {
