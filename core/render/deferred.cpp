@@ -198,10 +198,12 @@ void RasterView::forSurfaces(Body&& body, Nothing&& nothing) const {
     const float alpha = images_.alpha.values[i];
     if (alpha < kVisibleAlpha) return nothing(i);
     const vec3 base_color = glm::clamp(triple(images_.extra, i, kBaseColor), 0.0f, 1.0f);
+    const Planes& depth =
+        alpha >= kDepthAlpha ? images_.median_depth : images_.depth;  // a fringe has no median
     body(i, alpha,
          surfaceOf(base_color, clampedShare(extra(kOcclusion)[i]), clampedShare(extra(kRoughness)[i]), alpha,
                    resolveNormal(triple(images_.normal, i), alpha, rays, x, y), rays.toEye(x, y)),
-         [&] { return rays.at(x, y, images_.median_depth.values[i]); });
+         [&] { return rays.at(x, y, depth.values[i]); });
   });
 }
 

@@ -11,6 +11,7 @@
 #include "core/render/cpu_scene_renderer.h"
 #include "core/render/gaussian_surfaces.h"
 #include "core/render/reference_scene_renderer.h"
+#include "core/scene/gbuffer.h"
 #include "core/scene/thin_axis.h"
 #include "tests/support/sphere_capture.h"
 #include "tests/support/splat_shapes.h"
@@ -311,6 +312,21 @@ TEST(Lamps, OfManyMapsAddUpAsOneByOne) {
   }
   const Planes all = drawn(*renderer, litBy(boxes));
   for (std::size_t k = 0; k < sum.size(); ++k) ASSERT_NEAR(all.values[k], sum[k], 1e-4f * (1 + sum[k]));
+}
+
+// A fringe lies where its Gaussians are, not at the eye, where this lamp is without end.
+TEST(Lamps, AtTheEyeLightFringesAsTheSurfaceBesideThem) {
+  const auto renderer = newCpuSceneRenderer(makeCpuDevice());
+  const RenderScene scene = litBy({lampOf(PointLight{.position_m = dvec3(0.4, 1.6, 2), .intensity = 4})});
+  const Planes light = drawn(*renderer, scene), alpha = drawn(*renderer, scene, kAlphaChannel);
+  float inside = 0, fringe = 0;
+  for (std::size_t i = 0; i < alpha.values.size(); ++i) {
+    if (alpha.values[i] < kVisibleAlpha) continue;
+    float& brightest = alpha.values[i] >= kDepthAlpha ? inside : fringe;
+    brightest = std::max(brightest, light.values[i] / alpha.values[i]);
+  }
+  EXPECT_GT(fringe, 0);
+  EXPECT_LT(fringe, 2 * inside);
 }
 
 TEST(Lamps, InsideTheSubjectAreNamed) {
