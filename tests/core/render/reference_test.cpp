@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "hwy/highway.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/message_of.h"
 #include "tests/support/sphere_capture.h"
 #include "tests/support/splat_shapes.h"
@@ -191,12 +192,7 @@ TEST(Reference, IsTheSameForEveryInstructionSetAndAnyNumberOfThreads) {
   setThreadCount(1);
   EXPECT_EQ(drawn(ballOnSheet(), aside(0.3), options).relight.values, usual.relight.values);
   setThreadCount(0);
-  for (const SimdTarget target : {SimdTarget::Scalar, SimdTarget::Avx2, SimdTarget::Avx512}) {
-    try {
-      makeCpuDevice(target);
-    } catch (const Error&) {
-      continue;  // the machine lacks it
-    }
+  forEveryInstructionSet([&](SimdTarget target) {
     const auto renderer = newReferenceSceneRenderer(makeCpuDevice(target), options);
     renderer->load(ballOnSheet());
     Progress progress;
@@ -206,8 +202,7 @@ TEST(Reference, IsTheSameForEveryInstructionSetAndAnyNumberOfThreads) {
         EXPECT_EQ(p.channels[0].values->values, usual.relight.values) << static_cast<int>(target);
       }
     });
-  }
-  makeCpuDevice();
+  });
 }
 
 TEST(Reference, RefinesAndAddsUpAndTellsHowSureItIs) {
