@@ -136,7 +136,7 @@ class CpuSceneRenderer final : public SceneRenderer {
       if (by_panorama)
         *values = *by_panorama;
       else
-        *values = Planes(camera_.width, camera_.height, 3);
+        view_->unlit(*values);
     };
     lamps_.forEach(lighting_, *resident_, progress, [&](const std::vector<ShadedLamp>& lamps) {
       if (!values) begin();
@@ -153,7 +153,7 @@ class CpuSceneRenderer final : public SceneRenderer {
     lit_ = nullptr;
     auto values = pool_.take();
     view_->relit(*light_,
-                 {.yaw_rad = static_cast<float>(environment.rotation_deg * kPi / 180),
+                 {.yaw_rad = yawOf(environment),
                   .exposure = static_cast<float>(environment.gain),
                   .transfer = transfers()},
                  *values);

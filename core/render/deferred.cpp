@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
+#include "core/render/pixel_rays.h"
 
 namespace beam {
 namespace {
@@ -32,32 +33,6 @@ void shape(const Planes& like, int channels, Planes& out) {
   out = Planes(like.width, like.height, channels);
 }
 
-// Rays of a camera's pixels.
-class Rays {
- public:
-  explicit Rays(const Camera& camera)
-      : world_from_camera_(glm::conjugate(camera.camera_from_world.rotation)),
-        eye_m_(inverse(camera.camera_from_world).translation_m),
-        x_(static_cast<std::size_t>(camera.width)),
-        y_(static_cast<std::size_t>(camera.height)) {
-    for (std::size_t x = 0; x < x_.size(); ++x) x_[x] = rayOf(camera.intrinsics, {x + 0.5, 0.5}).x;
-    for (std::size_t y = 0; y < y_.size(); ++y) y_[y] = rayOf(camera.intrinsics, {0.5, y + 0.5}).y;
-  }
-  dvec3 through(int x, int y) const {
-    return {x_[static_cast<std::size_t>(x)], y_[static_cast<std::size_t>(y)], 1};
-  }
-  vec3 toEye(int x, int y) const { return vec3(-glm::normalize(world_from_camera_ * through(x, y))); }
-  vec3 at(int x, int y, float z_m) const {
-    return vec3(eye_m_ + world_from_camera_ * (static_cast<double>(z_m) * through(x, y)));
-  }
-  const dquat& worldFromCamera() const { return world_from_camera_; }
-
- private:
-  dquat world_from_camera_;
-  dvec3 eye_m_;
-  std::vector<double> x_, y_;  // of columns and rows: a division a pixel would be a tenth of its shading
-};
-
 // body(x, y, pixel) for every pixel, in parallel by rows.
 template <class Body>
 void forPixels(int width, int height, Body&& body) {
@@ -69,7 +44,7 @@ void forPixels(int width, int height, Body&& body) {
 }
 
 // Unit, world; the direction to the camera where the blended normals cancel out.
-vec3 resolveNormal(vec3 blended, float alpha, const Rays& rays, int x, int y) {
+vec3 resolveNormal(vec3 blended, float alpha, const PixelRays& rays, int x, int y) {
   const float length = glm::length(blended);
   const dvec3 n =
       length < kDegenerate * alpha ? -glm::normalize(rays.through(x, y)) : dvec3(blended / length);
@@ -150,7 +125,7 @@ void RasterView::depth(Planes& out) const {
 
 void RasterView::normal(Planes& out) const {
   shape(images_.alpha, 3, out);
-  const Rays rays(camera_);
+  const PixelRays rays(camera_);
   forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {
     const float alpha = images_.alpha.values[i];
     put(out, i,
@@ -193,7 +168,7 @@ Visibility RasterView::visibilityAt(std::size_t pixel, float alpha) const {
 
 template <class Body, class Nothing>
 void RasterView::forSurfaces(Body&& body, Nothing&& nothing) const {
-  const Rays rays(camera_);
+  const PixelRays rays(camera_);
   forPixels(images_.alpha.width, images_.alpha.height, [&](int x, int y, std::size_t i) {
     const float alpha = images_.alpha.values[i];
     if (alpha < kVisibleAlpha) return nothing(i);
@@ -222,6 +197,11 @@ void RasterView::relit(const PreparedLight& light, const ShadeOptions& options, 
       [&](std::size_t i) { put(out, i, vec3(0)); });
 }
 
+void RasterView::unlit(Planes& out) const {
+  shape(images_.alpha, 3, out);
+  std::fill(out.values.begin(), out.values.end(), 0.0f);
+}
+
 void RasterView::addLamps(const std::vector<ShadedLamp>& lamps, Planes& out) const {
   requireMaterials("lamps");
   forSurfaces(
@@ -246,7 +226,7 @@ GBuffer RasterView::gbuffer() const {
     g.ambient_occlusion = Image<float>(w, h);
     g.roughness = Image<float>(w, h);
   }
-  const Rays rays(camera_);
+  const PixelRays rays(camera_);
   forPixels(w, h, [&](int x, int y, std::size_t i) {
     const float alpha = images_.alpha.values[i];
     g.alpha.pixels[i] = alpha;
@@ -302,7 +282,7 @@ Image<vec3> shade(const GBuffer& g, const Camera& camera, const PreparedLight& l
     throw Error(Error::Kind::Bug,
                 "shade: expected a G-buffer with base colour, ambient occlusion and roughness");
   }
-  const Rays rays(camera);
+  const PixelRays rays(camera);
   const LightTurn turn(light, options.yaw_rad);
   Image<vec3> out(g.alpha.width, g.alpha.height, vec3(0), Encoding::Linear);
   forPixels(out.width, out.height, [&](int x, int y, std::size_t i) {

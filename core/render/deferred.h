@@ -43,6 +43,7 @@ class RasterView {
   void attribute(std::string_view name, Planes& out) const;
   // Linear relit radiance x alpha, premultiplied on black.
   void relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const;
+  void unlit(Planes& out) const;  // what relit() gives where nothing shines
   // Adds the light of lamps to what relit() gave. Occlusion and visibility are of the panorama alone.
   void addLamps(const std::vector<ShadedLamp>& lamps, Planes& out) const;
   GBuffer gbuffer() const;

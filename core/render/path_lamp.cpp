@@ -25,7 +25,7 @@ LampSample PathLamp::of(vec3 x_m, vec3 position_m) const {
   LampSample s{light.toward, position_m, light.distance_m, light.irradiance};
   if (!wide()) return s;
   const float cosine = -glm::dot(light.toward, source_.axis);
-  if (cosine <= 0) return {};
+  if (cosine <= 0 || light.distance_m <= 0) return {};
   // Density 1 / area over the rectangle.
   s.pdf = light.distance_m * light.distance_m / (area_m2_ * cosine);
   s.light = source_.strength / area_m2_;

@@ -217,9 +217,13 @@ Image<vec3> convolvedPanorama(const Image<vec3>& panorama, ivec2 size, float min
   return out;
 }
 
+Environment lightingEnvironment(const Environment& e, const Progress& progress) {
+  return {reducedPanorama(e.radiance, kWidestLight, kWidestLight / 2, progress), e.yaw_rad, e.gain};
+}
+
 PreparedLight prepareLight(const Environment& environment, const Progress& progress) {
   PreparedLight light;
-  light.radiance = reducedPanorama(environment.radiance, kWidestLight, kWidestLight / 2, progress);
+  light.radiance = lightingEnvironment(environment, progress).radiance;
   for (vec3& p : light.radiance.pixels) p *= environment.gain;
   light.yaw_rad = environment.yaw_rad;
   light.irradiance_sh = irradianceSh(Environment{light.radiance});
@@ -243,9 +247,7 @@ PreparedLight prepareLight(const Environment& environment, const Progress& progr
 }
 
 LightTurn::LightTurn(const PreparedLight& light, float yaw_rad)
-    : cos_(std::cos(-yaw_rad - light.yaw_rad)),
-      sin_(std::sin(-yaw_rad - light.yaw_rad)),
-      sh_(dmat3(cos_, 0, -sin_, 0, 1, 0, sin_, 0, cos_)) {}
+    : cos_(std::cos(-yaw_rad - light.yaw_rad)), sin_(std::sin(-yaw_rad - light.yaw_rad)) {}
 
 // (R v) . T = v . (R^T T): one turn of the tables instead of one of each visibility.
 TransferTables LightTurn::of(const TransferTables& tables) const {

@@ -32,6 +32,8 @@ struct PreparedLight {
 
 // Of a panorama that light falls from, at most: a wider one lights as its reduced one does.
 inline constexpr int kWidestLight = 4096;
+// The reduced one; as it is where it is not wider.
+Environment lightingEnvironment(const Environment& environment, const Progress& progress = Progress{});
 
 // Throws Cancelled when the progress is stopped.
 PreparedLight prepareLight(const Environment& environment, const Progress& progress = Progress{});
@@ -40,20 +42,13 @@ PreparedLight prepareLight(const Environment& environment, const Progress& progr
 class LightTurn {
  public:
   LightTurn(const PreparedLight& light, float yaw_rad);
-  // c_k of the world's directions as they are of the panorama's.
-  Visibility of(const Visibility& visibility) const {
-    Visibility turned;
-    sh_.apply(1, visibility.data(), turned.data());
-    return turned;
-  }
   // The tables by coefficients of the world's directions: looked up, as the others, by normals in the
-  // panorama's axes, they give of a visibility what those give of of(visibility).
+  // panorama's axes.
   TransferTables of(const TransferTables& tables) const;
   vec3 operator()(vec3 d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
 
  private:
   float cos_, sin_;
-  ShRotation sh_;
 };
 
 // Unit directions and normals in the panorama's axes.

@@ -15,6 +15,7 @@
 #include "core/math/color.h"
 #include "core/render/cpu_scene_renderer.h"
 #include "core/render/gaussian_surfaces.h"
+#include "core/render/pixel_rays.h"
 #include "core/render/prepared_light.h"
 #include "core/scene/gbuffer.h"
 
@@ -47,22 +48,6 @@ struct FirstHits {
   vec3 baseColor(std::size_t i) const {
     return glm::clamp(triple(*base_color, i) / alpha->values[i], 0.0f, 1.0f);
   }
-};
-
-// Where rays of pixels start and go.
-class CameraRays {
- public:
-  explicit CameraRays(const Camera& camera)
-      : world_from_camera_(inverse(camera.camera_from_world)), intrinsics_(camera.intrinsics) {}
-  vec3 eye() const { return vec3(world_from_camera_.translation_m); }
-  // Not unit: 1 along the optical axis.
-  vec3 through(int x, int y) const {
-    return vec3(world_from_camera_.rotation * rayOf(intrinsics_, {x + 0.5, y + 0.5}));
-  }
-
- private:
-  Rigid3 world_from_camera_;
-  Intrinsics intrinsics_;
 };
 
 // Sums of a pixel's paths; of those that ended in a surface.
@@ -176,7 +161,7 @@ class PathPicture {
     if (z_m > 0) {
       const bool other = std::abs(hit.distance_m - z_m * length) > kLayer_m;
       if (other && !first.from_behind) return hit;
-      hit.position_m = rays_.eye() + z_m * through;
+      hit.position_m = vec3(rays_.eye()) + z_m * through;
     }
     hit.normal = triple(*first_.normal, i);
     hit.base_color = first_.baseColor(i);
@@ -187,13 +172,13 @@ class PathPicture {
   // A ray through the fringe of a surface mostly ends nowhere; alpha has that already.
   std::optional<GaussianSurfaces::FirstHit> firstOf(vec3 direction, PathNumbers& numbers) const {
     for (int i = 0; i < kTries; ++i) {
-      if (auto first = surfaces_.first(rays_.eye(), direction, numbers.bits())) return first;
+      if (auto first = surfaces_.first(vec3(rays_.eye()), direction, numbers.bits())) return first;
     }
     return {};
   }
 
   void addPixel(int x, int y, std::size_t i, int from, int to) {
-    const vec3 through = rays_.through(x, y);
+    const vec3 through(rays_.worldThrough(x, y));
     const float length = glm::length(through);
     const vec3 direction = through / length, albedo = albedoOf(i);
     PixelSum& sum = sums_[i];
@@ -216,7 +201,7 @@ class PathPicture {
   }
 
   FirstHits first_;
-  CameraRays rays_;
+  PixelRays rays_;
   const GaussianSurfaces& surfaces_;
   const ReferenceOptions& options_;
   PathIntegrator paths_;
@@ -318,14 +303,8 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     if (!surfaces_) surfaces_ = std::make_unique<GaussianSurfaces>(instances_, *device_);
     progress.check();
     if (sampler_ || !panorama_) return;
-    std::shared_ptr<const Environment> light = panorama_;
-    if (light->radiance.width > kWidestLight) {
-      light = std::make_shared<const Environment>(
-          Environment{reducedPanorama(light->radiance, kWidestLight, kWidestLight / 2, progress),
-                      light->yaw_rad, light->gain});
-    }
-    sampler_ = std::make_unique<EnvironmentSampler>(
-        *light, static_cast<float>(light_.rotation_deg * kPi / 180), static_cast<float>(light_.gain));
+    sampler_ = std::make_unique<EnvironmentSampler>(lightingEnvironment(*panorama_, progress), yawOf(light_),
+                                                    static_cast<float>(light_.gain));
     progress.check();
   }
 

@@ -5,9 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
+#include <iterator>
 #include <utility>
 
 #include "core/base/error.h"
@@ -26,34 +24,31 @@ const LightAbility* abilityOf(const RendererAbilities& abilities, std::string_vi
 
 std::string nameOf(const Light& light) { return light.title.empty() ? light.id : light.title; }
 
-constexpr std::size_t kNearest = 16;
+constexpr std::ptrdiff_t kNearest = 16;
 
 // Whether most of the dense Gaussians next to it turn their outer sides away from it; false where sides are
 // unknown.
 bool isInside(const RenderInstance& instance, vec3 world_m) {
   const Attribute* side = attributeNamed(*instance.attributes, kNormalSideName);
   const GaussianCloud& cloud = *instance.cloud;
-  if (!side || cloud.size() < kNearest) return false;
+  if (!side) return false;
   const auto x_m = vec3(inverse(instance.world_from_cloud) * dvec3(world_m));
-  std::array<std::pair<float, std::size_t>, kNearest> nearest;
-  nearest.fill({std::numeric_limits<float>::infinity(), 0});
+  std::vector<std::pair<float, std::size_t>> nearest;  // squared distances
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.opacity[i] < kCastingAlpha) continue;
     const vec3 d = cloud.position_m[i] - x_m;
-    const float distance2 = glm::dot(d, d);
-    if (distance2 >= nearest.back().first) continue;
-    nearest.back() = {distance2, i};
-    for (std::size_t k = kNearest - 1; k > 0 && nearest[k] < nearest[k - 1]; --k)
-      std::swap(nearest[k], nearest[k - 1]);
+    if (cloud.opacity[i] >= kCastingAlpha) nearest.emplace_back(glm::dot(d, d), i);
   }
-  if (!std::isfinite(nearest.back().first)) return false;
-  const auto away = std::count_if(nearest.begin(), nearest.end(), [&](const auto& n) {
+  if (std::ssize(nearest) < kNearest) return false;
+  const auto end = nearest.begin() + kNearest;
+  std::nth_element(nearest.begin(), end - 1, nearest.end());
+  const auto away = std::count_if(nearest.begin(), end, [&](const auto& n) {
     return side->values[n.second] * glm::dot(thinAxis(cloud, n.second), x_m - cloud.position_m[n.second]) < 0;
   });
-  return static_cast<std::size_t>(away) > kNearest / 2;
+  return away > kNearest / 2;
 }
 
-void addLightsInside(const RenderScene& scene, std::vector<std::string>& sentences) {
+std::vector<std::string> lightsInside(const RenderScene& scene) {
+  std::vector<std::string> sentences;
   for (const Light& light : scene.lighting.lights) {
     const std::vector<LightSource> sources = light.enabled ? sourcesOf(light) : std::vector<LightSource>();
     const bool inside = std::any_of(sources.begin(), sources.end(), [&](const LightSource& s) {
@@ -62,6 +57,7 @@ void addLightsInside(const RenderScene& scene, std::vector<std::string>& sentenc
     });
     if (inside) sentences.push_back(fmt::format("light \"{}\" is inside the subject", nameOf(light)));
   }
+  return sentences;
 }
 
 void addLights(const Lighting& lighting, const RendererAbilities& abilities,
@@ -106,7 +102,6 @@ std::vector<std::string> leftOut(const RenderScene& scene, const RendererAbiliti
   if (scene.environment && scene.lighting.environment.enabled && !abilityOf(abilities, "environment"))
     sentences.push_back(fmt::format("light from all around is not drawn by the renderer {}", abilities.id));
   addLights(scene.lighting, abilities, sentences);
-  addLightsInside(scene, sentences);
   if (!scene.meshes.empty() && !abilities.meshes)
     sentences.push_back(fmt::format("meshes are not drawn by the renderer {}", abilities.id));
   if (scene.ground.enabled && !abilities.ground)
@@ -117,9 +112,13 @@ std::vector<std::string> leftOut(const RenderScene& scene, const RendererAbiliti
 std::vector<std::string> SceneRenderer::load(const RenderScene& scene, const Progress& progress) {
   loaded_ = false;
   doLoad(scene, progress);
+  if (scene.instances != scene_.instances || scene.lighting.lights != scene_.lighting.lights)
+    inside_ = lightsInside(scene);
   scene_ = scene;
   loaded_ = true;
-  return leftOut(scene, abilities());
+  std::vector<std::string> sentences = leftOut(scene, abilities());
+  sentences.insert(sentences.end(), inside_.begin(), inside_.end());
+  return sentences;
 }
 
 void SceneRenderer::draw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,

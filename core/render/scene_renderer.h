@@ -84,6 +84,7 @@ class SceneRenderer {
                       const OnPicture& on_picture) = 0;
 
   RenderScene scene_;
+  std::vector<std::string> inside_;  // of its lights, a sentence each
   bool loaded_ = false;
 };
 

@@ -17,25 +17,26 @@ void ShadedLamps::forget() {
 
 void ShadedLamps::forEach(const Lighting& lighting, const ResidentScene& scene, const Progress& progress,
                           const OnLamps& on_lamps) {
-  const std::vector<ShadedLamp> before = std::exchange(lamps_, {});
+  std::vector<ShadedLamp> before = std::exchange(lamps_, {});
   std::size_t bytes = 0;
-  const auto give = [&] {
-    if (!lamps_.empty()) on_lamps(lamps_);
-  };
   for (const Light& light : lighting.lights) {
     if (!light.enabled) continue;
     for (const LightSource& source : sourcesOf(light)) {
       if (source.strength == vec3(0)) continue;
       progress.check();
-      lamps_.push_back({source, castsShadows(light) ? shadowOf(source, scene, before) : nullptr});
-      if (lamps_.back().shadow) bytes += lamps_.back().shadow->bytes();
-      if (bytes < kMostShadowBytes) continue;
-      give();
-      lamps_.clear();
-      bytes = 0;
+      ShadedLamp lamp{source, castsShadows(light) ? shadowOf(source, scene, before) : nullptr};
+      const std::size_t more = lamp.shadow ? lamp.shadow->bytes() : 0;
+      if (!lamps_.empty() && bytes + more > kMostShadowBytes) {
+        on_lamps(lamps_);
+        lamps_.clear();
+        before.clear();
+        bytes = 0;
+      }
+      bytes += more;
+      lamps_.push_back(std::move(lamp));
     }
   }
-  give();
+  if (!lamps_.empty()) on_lamps(lamps_);
 }
 
 std::shared_ptr<const ShadowMap> ShadedLamps::shadowOf(const LightSource& source, const ResidentScene& scene,

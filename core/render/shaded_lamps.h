@@ -15,7 +15,8 @@ namespace beam {
 
 class ComputeDevice;
 
-inline constexpr std::size_t kMostShadowBytes = std::size_t(256) << 20;  // of maps that are there at a time
+// Of maps at a time; as many are there of before while lamps move.
+inline constexpr std::size_t kMostShadowBytes = std::size_t(256) << 20;
 
 struct ShadedLamp {
   LightSource source;

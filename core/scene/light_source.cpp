@@ -7,8 +7,6 @@
 namespace beam {
 namespace {
 
-float radians(double degrees) { return static_cast<float>(degrees * (kPi / 180)); }
-
 vec3 strengthOf(double intensity, const dvec3& color) { return vec3(intensity * color); }
 
 // 1 up to `inner`, 0 from `outer` on, smoothstep between.
@@ -37,13 +35,13 @@ std::vector<LightSource> placesOf(const PointLight& l) {
 }
 
 std::vector<LightSource> placesOf(const SpotLight& l) {
-  const float outer = radians(l.outer_deg);
+  const auto outer = static_cast<float>(glm::radians(l.outer_deg));
   return {{.position_m = vec3(l.position_m),
            .strength = strengthOf(l.intensity, l.color),
            .axis = vec3(-aimed(l.position_m, l.target_m, 0)[2]),
            .range_m = static_cast<float>(l.range_m),
            .cone = true,
-           .inner_rad = std::min(radians(l.inner_deg), outer),
+           .inner_rad = std::min(static_cast<float>(glm::radians(l.inner_deg)), outer),
            .outer_rad = outer}};
 }
 

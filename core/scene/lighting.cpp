@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "core/base/error.h"
@@ -21,8 +20,6 @@ bool isId(const std::string& text) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
 }
-
-double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 
 const FieldInfo& colorInfo() {
   static const FieldInfo kInfo{
@@ -223,7 +220,7 @@ bool castsShadows(const Light& light) {
 }
 
 dvec3 directionTo(const DirectionalLight& light) {
-  const double azimuth = radians(light.azimuth_deg), elevation = radians(light.elevation_deg);
+  const double azimuth = glm::radians(light.azimuth_deg), elevation = glm::radians(light.elevation_deg);
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
           std::cos(elevation) * std::cos(azimuth)};
 }
@@ -236,7 +233,7 @@ dmat3 aimed(const dvec3& position_m, const dvec3& target_m, double roll_deg) {
   const double sine = glm::length(level);  // of the angle to the vertical
   const dvec3 right = sine > 1e-9 ? level / sine : dvec3(1, 0, 0);
   const dvec3 up = glm::cross(back, right);
-  const double c = std::cos(radians(roll_deg)), s = std::sin(radians(roll_deg));
+  const double c = std::cos(glm::radians(roll_deg)), s = std::sin(glm::radians(roll_deg));
   return {c * right + s * up, c * up - s * right, back};
 }
 

@@ -34,6 +34,9 @@ struct EnvironmentLight {
 
   bool operator==(const EnvironmentLight&) const = default;
 };
+inline float yawOf(const EnvironmentLight& light) {
+  return static_cast<float>(light.rotation_deg * kPi / 180);
+}
 inline constexpr const char* kOcclusionAlone = "ao";
 // The one declaration of that choice: of an environment, and of a project for pictures without a look.
 FieldInfo environmentShadowsInfo(std::string name);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "core/image/image.h"
 #include "core/io/written_by.h"
@@ -17,7 +18,7 @@ inline constexpr const char* kRawTransform = "raw";  // scene-linear, into OpenE
 // "png", "exr" of raw. Throws Error{Usage} for a view transform that is not drawn.
 std::string_view lookFileExtension(const Look& look);
 
-// What is behind the subject: the panorama where the look says so, else its colour.
+// What a look may put behind the subject.
 struct Behind {
   Camera camera;
   const Environment* panorama = nullptr;  // as it was opened; null: none

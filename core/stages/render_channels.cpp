@@ -139,7 +139,7 @@ class ChannelWriter {
     RenderScene scene;
     scene.instances = {instanceOf(result, sequence_.renderMode())};
     scene.lighting = request_.lighting;
-    requireWhatIsNeeded(scene, name);
+    for (const std::string& id : request_.channels) requireWhatIsNeeded(channelOf(id), scene, name);
     if (!lights_.empty() && lacksVisibility(scene, renderer_.abilities())) {
       without_visibility_.push_back(name);
       places_without_.push_back(frame.value);
@@ -197,23 +197,6 @@ class ChannelWriter {
 
   bool isKept(const fs::path& file, const std::string& source) const {
     return request_.skip_existing && isMadeFrom(request_.out / file, request_.written_by, source);
-  }
-
-  // The light is the request's.
-  void requireWhatIsNeeded(const RenderScene& scene, const std::string& name) const {
-    for (const std::string& id : request_.channels) {
-      const ChannelInfo& channel = channelOf(id);
-      const Lack lack = lackOf(channel, scene);
-      if (lack == Lack::Materials) {
-        throw Error(
-            Error::Kind::Data,
-            fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, id));
-      }
-      if (lack == Lack::Attribute) {
-        throw Error(Error::Kind::Data, fmt::format("the Gaussians of frame {} have no \"{}\", which {} shows",
-                                                   name, channel.attribute, id));
-      }
-    }
   }
 
   // Its folder is there then.
@@ -416,6 +399,19 @@ void requirePanoramas(const RenderRequest& request) {
 }
 
 }  // namespace
+
+void requireWhatIsNeeded(const ChannelInfo& channel, const RenderScene& scene, const std::string& name) {
+  const Lack lack = lackOf(channel, scene);
+  if (lack == Lack::Materials) {
+    throw Error(
+        Error::Kind::Data,
+        fmt::format("frame {} has no materials yet, which {} needs: run Materials first", name, channel.id));
+  }
+  if (lack == Lack::Attribute) {
+    throw Error(Error::Kind::Data, fmt::format("the Gaussians of frame {} have no \"{}\", which {} shows",
+                                               name, channel.attribute, channel.id));
+  }
+}
 
 void requireDrawable(const RenderRequest& request, const RendererAbilities& abilities) {
   for (const std::string& id : request.channels) {

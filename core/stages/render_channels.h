@@ -34,6 +34,10 @@ struct RenderRequest {
   std::string written_by = {};
 };
 
+// Throws Error{Data} where the scene of a frame called `name` has no materials or attribute that the channel
+// needs. Light is another matter.
+void requireWhatIsNeeded(const ChannelInfo& channel, const RenderScene& scene, const std::string& name);
+
 // Every file that renderChannels would write, relative to `out`; of frames without a mesh that one too.
 std::vector<std::filesystem::path> channelFiles(const GaussianSequence& sequence,
                                                 const RenderRequest& request);

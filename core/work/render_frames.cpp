@@ -35,10 +35,7 @@ RenderFramesOutcome renderFrames(const RenderFramesRequest& request, SceneRender
   const auto sequence = sequenceOf(project, Shows::Between);
   RenderRequest pictures;
   pictures.channels = request.channels;
-  pictures.views = selectViews(request.cameras, project.capture());
-  if (request.size) {
-    for (View& view : pictures.views) view.camera = fittedTo(view.camera, request.size->x, request.size->y);
-  }
+  pictures.views = selectViews(request.cameras, project.capture(), request.size);
   pictures.frames = selectSolvedFrames(request.frames, *sequence, progress);
   pictures.environments = request.environments;
   pictures.lighting = plainLighting(request.project);

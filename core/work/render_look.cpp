@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -18,6 +17,7 @@
 #include "core/stages/look_picture.h"
 #include "core/stages/panorama_file.h"
 #include "core/stages/project_sequence.h"
+#include "core/stages/render_channels.h"
 #include "core/work/last_solved.h"
 #include "core/work/selection.h"
 
@@ -76,11 +76,7 @@ class LookWriter {
     scene.lighting = now.lighting;
     scene.environment = panorama_;
     const ChannelInfo channels[] = {channelOf(kRelightChannel), channelOf(kAlphaChannel)};
-    if (lackOf(channels[0], scene) == Lack::Materials) {
-      throw Error(
-          Error::Kind::Data,
-          fmt::format("frame {} has no materials yet, which a look needs: run Materials first", name));
-    }
+    requireWhatIsNeeded(channels[0], scene, name);
     tell(renderer_.load(scene, progress));
     Planes relit, alpha;
     if (isLit(scene)) {
@@ -164,10 +160,7 @@ RenderLookOutcome renderLook(const RenderLookRequest& request, SceneRenderer& re
       {.frames = request.frames, .between = true, .materials = true, .strict = request.strict}, progress);
   const Project& project = last.project;
   const auto sequence = sequenceOf(project, Shows::Between);
-  std::vector<View> views = selectViews(request.cameras, project.capture());
-  if (request.size) {
-    for (View& view : views) view.camera = fittedTo(view.camera, request.size->x, request.size->y);
-  }
+  const std::vector<View> views = selectViews(request.cameras, project.capture(), request.size);
   const std::vector<FrameIndex> frames = selectSolvedFrames(request.frames, *sequence, progress);
   const std::string folder = "look_" + look.name;
   const auto fileOf = [&](const View& view, FrameIndex frame) {
@@ -183,13 +176,21 @@ RenderLookOutcome renderLook(const RenderLookRequest& request, SceneRenderer& re
   writer.requireLight();
   requireFolderTarget(request.out, files, {kCommand, request.force, inputFolders(project)});
   last.tell();
-  progress.expect(static_cast<std::int64_t>(files.size()));
+  const bool refines = renderer.abilities().refines;  // tells of a picture path by path
+  if (!refines) progress.expect(static_cast<std::int64_t>(files.size()));
   for (const FrameIndex frame : frames) {
     const auto gaussians = solvedFrame(*sequence, frame);
     for (const View& view : views) {
       progress.check();
-      writer.picture(frame, gaussians, view, fileOf(view, frame), progress);
-      progress.step();
+      if (refines) {
+        Progress part =
+            progress.part(1.0 / static_cast<double>(files.size()),
+                          fmt::format("frame {}, camera {}", nameOf(*sequence, frame), view.name));
+        writer.picture(frame, gaussians, view, fileOf(view, frame), part);
+      } else {
+        writer.picture(frame, gaussians, view, fileOf(view, frame), progress);
+        progress.step();
+      }
     }
   }
   return {folder, views.size(), frames.size(), interpolatedOf(*sequence, frames)};

@@ -50,7 +50,8 @@ std::string usualCameras(const CaptureSet& capture) {
   return some ? "test" : "all";
 }
 
-std::vector<View> selectViews(const std::string& words, const CaptureSet& capture) {
+std::vector<View> selectViews(const std::string& words, const CaptureSet& capture,
+                              std::optional<ivec2> size) {
   std::vector<View> chosen;
   std::set<std::string> names;
   for (const std::string& word : splitAtCommas(words)) {
@@ -66,6 +67,8 @@ std::vector<View> selectViews(const std::string& words, const CaptureSet& captur
     throw Error(Error::Kind::Usage,
                 "--cameras is empty; expected test, train, all, or names and patterns with commas");
   }
+  for (View& view : chosen)
+    if (size) view.camera = fittedTo(view.camera, size->x, size->y);
   return chosen;
 }
 

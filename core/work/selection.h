@@ -2,6 +2,7 @@
 // Words that choose views of a capture and frames of a sequence, as the command line has them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ std::string usualCameras(const CaptureSet& capture);
 
 // "test", "train", "all", camera names and patterns ("cam0*") in any mixture, with commas; each view once, in
 // the order of the words. Throws Error{Usage} for a word that chooses none and an empty choice.
-std::vector<View> selectViews(const std::string& words, const CaptureSet& capture);
+// With a `size` their pictures have it (fittedTo).
+std::vector<View> selectViews(const std::string& words, const CaptureSet& capture,
+                              std::optional<ivec2> size = {});
 
 // "all": every frame with Gaussians; else a frame list. Throws Error{Data} when nothing is solved, Cancelled:
 // what there is of a frame may hang on pictures whose digests are not known yet.

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/base/parallel.h"
-#include "core/scene/environment.h"
+#include "core/render/sky_picture.h"
 #include "viewers/splat/channel_picture.h"
 
 namespace beam {
@@ -42,23 +41,6 @@ const Planes& valuesIn(const SplatPicture& picture, std::string_view channel) {
   return found && found->values ? *found->values : none;
 }
 
-Image<vec3> skyOf(const Camera& camera, const RenderScene& scene) {
-  Image<vec3> sky(camera.width, camera.height, vec3(0), Encoding::Linear);
-  const EnvironmentLight& light = scene.lighting.environment;
-  const dquat world_from_camera = glm::conjugate(camera.camera_from_world.rotation);
-  const dquat panorama_from_world = glm::angleAxis(-glm::radians(light.rotation_deg), dvec3(0, 1, 0));
-  parallelFor(camera.height, 16, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < camera.width; ++x) {
-        const dvec3 ray = glm::normalize(rayOf(camera.intrinsics, {x + 0.5, y + 0.5}));
-        const vec3 direction(panorama_from_world * (world_from_camera * ray));
-        sky(x, y) = static_cast<float>(light.gain) * radianceFrom(*scene.environment, direction);
-      }
-    }
-  });
-  return sky;
-}
-
 SplatRenderer::SplatRenderer(std::unique_ptr<SceneRenderer> renderer) : renderer_(std::move(renderer)) {}
 
 void SplatRenderer::render(const SplatRequest& r, Progress& progress, const OnPicture& on_picture) {
@@ -75,7 +57,8 @@ void SplatRenderer::render(const SplatRequest& r, Progress& progress, const OnPi
   const std::optional<Limits> fixed = fixedLimits(r, frame.channel);
   frame.limits = fixed.value_or(Limits{});
   const bool seen = r.sky && r.scene.environment;
-  Image<vec3> sky = seen ? skyOf(r.camera, r.scene) : Image<vec3>();
+  Image<vec3> sky =
+      seen ? skyPicture(r.camera, r.scene.lighting.environment, *r.scene.environment) : Image<vec3>();
   double milliseconds = 0;
   renderer_->draw(r.camera, channelsFor(frame, abilities()), progress, [&](RenderedPicture rendered) {
     SplatPicture picture = frame;

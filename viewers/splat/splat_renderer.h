@@ -58,7 +58,4 @@ class SplatRenderer {
 // The limits that do not hang on the picture; nothing: they are robustLimits() of its values.
 std::optional<Limits> fixedLimits(const SplatRequest& request, const ChannelInfo& channel);
 
-// The panorama as the camera sees it, the lighting's turn and gain applied: linear radiance.
-Image<vec3> skyOf(const Camera& camera, const RenderScene& scene);
-
 }  // namespace beam

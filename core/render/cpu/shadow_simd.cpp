@@ -63,18 +63,14 @@ HWY_INLINE unsigned castLanes(const GaussianBuffers& g, const float* side, const
     m1 = factor * times(rc.r[1], scale);
   } else {
     const Lanes inverse_z = one / max(t.z, Lanes(kNearestLight_m)), widest(kOffAxis * view.half_width);
-    const auto ratio = [&](Lanes v) HWY_ATTR { return min(max(v * inverse_z, -widest), widest); };
+    const auto ratio = [&](Lanes at_z) HWY_ATTR { return min(max(at_z * inverse_z, -widest), widest); };
     m0 = jacobianRow(rc.r[0], rc.r[2], factor, ratio(t.x), scale);
     m1 = jacobianRow(rc.r[1], rc.r[2], factor, ratio(t.y), scale);
   }
   const Vec3<Lanes> mz = times(rc.r[2], scale);
-  const Lanes k(kShadowDilation);
-  const Lanes a0 = dot(m0, m0), b0 = dot(m0, m1), c0 = dot(m1, m1);
-  const Lanes c01 = m0.x * m1.y - m0.y * m1.x, c02 = m0.x * m1.z - m0.z * m1.x,
-              c12 = m0.y * m1.z - m0.z * m1.y;
-  const Lanes det = fma(c01, c01, fma(c02, c02, c12 * c12)) + k * (a0 + c0 + k);
-  const Lanes inverse = one / det, va = a0 + k, vc = c0 + k;
-  const Lanes ia = vc * inverse, ib = -b0 * inverse, ic = va * inverse;
+  const Covariance2<Lanes> v = covarianceOf(m0, m1, Lanes(kShadowDilation));
+  const Lanes inverse = one / v.det;
+  const Lanes ia = v.c * inverse, ib = -v.b * inverse, ic = v.a * inverse;
   const Lanes zx = dot(mz, m0), zy = dot(mz, m1);
   const Lanes half_log2e(-0.5f * 1.44269504f);
   store(fma(t.x, factor, Lanes(0.5f) * size), out.x);
@@ -85,8 +81,8 @@ HWY_INLINE unsigned castLanes(const GaussianBuffers& g, const float* side, const
   store(t.z, out.z);
   store(fma(ia, zx, ib * zy), out.slope_x);
   store(fma(ib, zx, ic * zy), out.slope_y);
-  store(va, out.var_x);
-  store(vc, out.var_y);
+  store(v.a, out.var_x);
+  store(v.c, out.var_y);
   unsigned cast = view.parallel ? 0xffffu : bitsOf(t.z > Lanes(kNearestLight_m));
   if (side != nullptr) {
     const Vec3<Lanes> thin = thinColumn(rc, scale);

@@ -106,6 +106,22 @@ BEAM_INLINE Vec3<F> jacobianRow(const Vec3<F>& row, const Vec3<F>& row_z, F fact
           factor * nfma(ratio, row_z.z, row.z) * s.z};
 }
 
+// [[a b] [b c]] = M M^T + dilation I and its determinant, the rows of M being m0 and m1.
+template <class F>
+struct Covariance2 {
+  F det, a, b, c;
+};
+
+template <class F>
+BEAM_INLINE Covariance2<F> covarianceOf(const Vec3<F>& m0, const Vec3<F>& m1, F dilation) {
+  const F a0 = dot(m0, m0), c0 = dot(m1, m1);
+  // det(M M^T) as a sum of squares: no cancellation for needles.
+  const F c01 = m0.x * m1.y - m0.y * m1.x, c02 = m0.x * m1.z - m0.z * m1.x;
+  const F c12 = m0.y * m1.z - m0.z * m1.y;
+  return {fma(c01, c01, fma(c02, c02, c12 * c12)) + dilation * (a0 + c0 + dilation), a0 + dilation,
+          dot(m0, m1), c0 + dilation};
+}
+
 template <class F>
 BEAM_INLINE Projection<F> projectGaussian(const GaussianIn<F>& g, const CameraConstants<F>& k) {
   Projection<F> p;
@@ -120,12 +136,8 @@ BEAM_INLINE Projection<F> projectGaussian(const GaussianIn<F>& g, const CameraCo
   p.rc = mul(k.camera_from_world, rotationOf(p.qw, p.qx, p.qy, p.qz));
   p.m0 = jacobianRow(p.rc.r[0], p.rc.r[2], k.fx * p.inverse_z, p.xr, g.scale);
   p.m1 = jacobianRow(p.rc.r[1], p.rc.r[2], k.fy * p.inverse_z, p.yr, g.scale);
-  const F a0 = dot(p.m0, p.m0), c0 = dot(p.m1, p.m1);
-  // det(M M^T) as a sum of squares: no cancellation for needles.
-  const F c01 = p.m0.x * p.m1.y - p.m0.y * p.m1.x, c02 = p.m0.x * p.m1.z - p.m0.z * p.m1.x;
-  const F c12 = p.m0.y * p.m1.z - p.m0.z * p.m1.y;
-  p.det = fma(c01, c01, fma(c02, c02, c12 * c12)) + k.dilation * (a0 + c0 + k.dilation);
-  p.a = a0 + k.dilation, p.b = dot(p.m0, p.m1), p.c = c0 + k.dilation;
+  const Covariance2<F> v = covarianceOf(p.m0, p.m1, k.dilation);
+  p.det = v.det, p.a = v.a, p.b = v.b, p.c = v.c;
   return p;
 }
 
