@@ -52,7 +52,8 @@ class CpuSceneRenderer final : public SceneRenderer {
         lights_(lights ? std::move(lights) : std::make_shared<PreparedLights>()),
         renderer_(*device_, kept_sizes),
         resident_(device_->newResidentScene()),
-        lamps_(*device_) {
+        lamps_(*device_),
+        panorama_lamps_(*device_) {
     abilities_.id = "cpu";
     abilities_.title = device_->info().title;
     for (const ChannelInfo& c : channels())
@@ -73,14 +74,18 @@ class CpuSceneRenderer final : public SceneRenderer {
       view_ = nullptr;
       resident_->load(scene.instances);
       lamps_.forget();
+      panorama_lamps_.forget();
       instances_ = scene.instances;
       instances_loaded_ = true;
     }
     lighting_ = scene.lighting;
     const auto panorama = lighting_.environment.enabled ? scene.environment : nullptr;
-    if (panorama == panorama_) return;
-    light_ = panorama ? lights_->of(panorama, progress) : nullptr;
+    const PanoramaLamps apart =
+        transfers() && resident_->has(kVisibilityName) ? PanoramaLamps::Apart : PanoramaLamps::Within;
+    if (panorama == panorama_ && apart == apart_) return;
+    light_ = panorama ? lights_->of(panorama, progress, apart) : nullptr;
     panorama_ = panorama;
+    apart_ = apart;
   }
 
   void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
@@ -129,7 +134,7 @@ class CpuSceneRenderer final : public SceneRenderer {
 
   // Past lamps that were turned, what the panorama gives stays.
   std::shared_ptr<const Planes> lit(const Progress& progress) {
-    std::shared_ptr<const Planes> by_panorama = light_ ? litByPanorama() : nullptr;
+    std::shared_ptr<const Planes> by_panorama = light_ ? litByPanorama(progress) : nullptr;
     std::shared_ptr<Planes> values;
     const auto begin = [&] {
       values = pool_.take();
@@ -138,7 +143,7 @@ class CpuSceneRenderer final : public SceneRenderer {
       else
         view_->unlit(*values);
     };
-    lamps_.forEach(lighting_, *resident_, progress, [&](const std::vector<ShadedLamp>& lamps) {
+    lamps_.forEach(lampsOf(lighting_), *resident_, progress, [&](const std::vector<ShadedLamp>& lamps) {
       if (!values) begin();
       view_->addLamps(lamps, *values);
     });
@@ -147,16 +152,23 @@ class CpuSceneRenderer final : public SceneRenderer {
     return values;
   }
 
-  std::shared_ptr<const Planes> litByPanorama() {
+  std::shared_ptr<const Planes> litByPanorama(const Progress& progress) {
     const EnvironmentLight& environment = lighting_.environment;
     if (lit_ && lit_by_ == light_ && lit_as_ == environment) return lit_;
     lit_ = nullptr;
+    std::vector<Lamp> sources;
+    for (const LightSource& lamp : LightTurn(*light_, yawOf(environment)).toWorld(light_->lamps))
+      sources.push_back({lamp});
+    std::vector<ShadedLamp> lamps;
+    panorama_lamps_.forEach(sources, *resident_, progress, [&](const std::vector<ShadedLamp>& some) {
+      lamps.insert(lamps.end(), some.begin(), some.end());
+    });
     auto values = pool_.take();
     view_->relit(*light_,
                  {.yaw_rad = yawOf(environment),
                   .exposure = static_cast<float>(environment.gain),
                   .transfer = transfers()},
-                 *values);
+                 lamps, *values);
     lit_by_ = light_;
     lit_as_ = environment;
     return lit_ = values;
@@ -169,10 +181,11 @@ class CpuSceneRenderer final : public SceneRenderer {
   std::unique_ptr<ResidentScene> resident_;
   std::vector<RenderInstance> instances_;
   bool instances_loaded_ = false;
-  ShadedLamps lamps_;
+  ShadedLamps lamps_, panorama_lamps_;
   Lighting lighting_;
   std::shared_ptr<const Environment> panorama_;
-  std::shared_ptr<const PreparedLight> light_;  // of panorama_
+  PanoramaLamps apart_ = PanoramaLamps::Within;
+  std::shared_ptr<const PreparedLight> light_;  // of panorama_ and apart_
   const RasterView* view_ = nullptr;            // of camera_ and further_; null: none yet
   Camera camera_;
   std::vector<std::string> further_;

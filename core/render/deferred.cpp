@@ -82,10 +82,41 @@ Surface surfaceOf(vec3 base_color, float occlusion, float roughness, float alpha
           .to_eye = to_eye};
 }
 
-vec3 radiance(const Surface& s, const PreparedLight& light, const LightTurn& turn, const ShadeOptions& o) {
+// A lobe that a disc widens: by the variance of half vectors to it, theta^2 / 16 along an axis, where alpha^2
+// / 2 is that of the slopes.
+float widened(float alpha, float half_angle_rad) {
+  return std::sqrt(alpha * alpha + half_angle_rad * half_angle_rad / 8);
+}
+
+// Of lamps that are part of a panorama: what would come, what comes, what of that is reflected as a
+// highlight.
+struct LampLight {
+  vec3 open{0}, seen{0}, highlight{0};
+};
+LampLight lampLight(const std::vector<ShadedLamp>& lamps, const Surface& s, vec3 x_m) {
+  LampLight sum;
+  for (const auto& [source, map] : lamps) {
+    const float cosine = glm::dot(s.normal, source.toward);
+    const float half_angle = source.half_angle_rad, open = cosineOfDisc(cosine, half_angle);
+    if (open <= 0) continue;
+    const float seen = map ? map->lightAt(x_m + kShadowOffset_m * s.normal, half_angle) : 1;
+    sum.open += open * source.strength;
+    sum.seen += seen * open * source.strength;
+    if (seen <= 0 || cosine <= 0) continue;
+    const Reflectance r =
+        reflectance(s.normal, source.toward, s.to_eye, widened(ggxAlpha(s.roughness), half_angle));
+    sum.highlight += seen * r.specular * cosine * source.strength;
+  }
+  return sum;
+}
+
+// Without lamps that are apart from `light`: LampLight{}.
+vec3 radiance(const Surface& s, const PreparedLight& light, const LightTurn& turn, const LampLight& lamps,
+              const ShadeOptions& o) {
   const float n_dot_v = std::clamp(glm::dot(s.normal, s.to_eye), 1e-3f, 1.0f);
-  const vec3 normal = turn(s.normal), open = irradiance(light, normal);
+  const vec3 normal = turn(s.normal);
   const vec3 mirror = glm::normalize(2 * glm::dot(s.normal, s.to_eye) * s.normal - s.to_eye);
+  vec3 open = irradiance(light, normal);
   vec3 seen(s.occlusion);  // the share of `open` that arrives
   float shadow = 1;        // the share of the highlight
   if (s.visibility) {
@@ -94,10 +125,15 @@ vec3 radiance(const Surface& s, const PreparedLight& light, const LightTurn& tur
   } else if (o.specular_occlusion) {
     shadow = specularOcclusion(n_dot_v, s.occlusion, s.roughness);
   }
+  if (lamps.open != vec3(0)) {
+    seen = (seen * open + lamps.seen) / (open + lamps.open);
+    open += lamps.open;
+  }
   const vec3 bounced = o.multibounce_ao ? multibounce(seen, s.base_color) : seen;
   const vec3 diffuse = kDiffuseShare / kPi * s.base_color * open * bounced;
   const vec2 ab = splitSum(n_dot_v, s.roughness);
-  return diffuse + shadow * (kF0 * ab.x + ab.y) * prefiltered(light, turn(mirror), s.roughness);
+  return diffuse + lamps.highlight +
+         shadow * (kF0 * ab.x + ab.y) * prefiltered(light, turn(mirror), s.roughness);
 }
 
 vec3 lampRadiance(const ShadedLamp& lamp, const Surface& s, vec3 x_m) {
@@ -182,17 +218,19 @@ void RasterView::forSurfaces(Body&& body, Nothing&& nothing) const {
   });
 }
 
-void RasterView::relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const {
+void RasterView::relit(const PreparedLight& light, const ShadeOptions& options,
+                       const std::vector<ShadedLamp>& lamps, Planes& out) const {
   requireMaterials("relit");
   shape(images_.alpha, 3, out);
   const LightTurn turn(light, options.yaw_rad);
   const bool transfer = options.transfer && hasVisibility();
   const TransferTables tables = transfer ? turn.of(light.transfer) : TransferTables{};
   forSurfaces(
-      [&](std::size_t i, float alpha, Surface s, const auto&) {
+      [&](std::size_t i, float alpha, Surface s, const auto& position) {
         const Visibility visibility = transfer ? visibilityAt(i, alpha) : Visibility{};
         if (transfer) s.visibility = &visibility, s.tables = &tables;
-        put(out, i, options.exposure * alpha * beam::radiance(s, light, turn, options));
+        const LampLight apart = lamps.empty() ? LampLight{} : lampLight(lamps, s, position());
+        put(out, i, options.exposure * alpha * beam::radiance(s, light, turn, apart, options));
       },
       [&](std::size_t i) { put(out, i, vec3(0)); });
 }
@@ -290,7 +328,7 @@ Image<vec3> shade(const GBuffer& g, const Camera& camera, const PreparedLight& l
     if (alpha < kVisibleAlpha) return;
     const Surface s = surfaceOf(g.base_color.pixels[i], g.ambient_occlusion.pixels[i], g.roughness.pixels[i],
                                 alpha, g.normal_world.pixels[i], rays.toEye(x, y));
-    out.pixels[i] = options.exposure * alpha * radiance(s, light, turn, options);
+    out.pixels[i] = options.exposure * alpha * radiance(s, light, turn, {}, options);
   });
   return out;
 }

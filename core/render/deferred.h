@@ -41,8 +41,10 @@ class RasterView {
   void roughness(Planes& out) const;
   // A further attribute, value x alpha as it was blended; Error{Bug} for one that was not drawn.
   void attribute(std::string_view name, Planes& out) const;
-  // Linear relit radiance x alpha, premultiplied on black.
-  void relit(const PreparedLight& light, const ShadeOptions& options, Planes& out) const;
+  // Linear relit radiance x alpha, premultiplied on black. `lamps`: those that the light was prepared apart
+  // from, in the world.
+  void relit(const PreparedLight& light, const ShadeOptions& options, const std::vector<ShadedLamp>& lamps,
+             Planes& out) const;
   void unlit(Planes& out) const;  // what relit() gives where nothing shines
   // Adds the light of lamps to what relit() gave. Occlusion and visibility are of the panorama alone.
   void addLamps(const std::vector<ShadedLamp>& lamps, Planes& out) const;

@@ -10,6 +10,7 @@
 #include "core/math/brdf.h"
 #include "core/math/color.h"
 #include "core/math/sampling.h"
+#include "core/render/panorama_lamps.h"
 
 namespace beam {
 namespace {
@@ -221,9 +222,15 @@ Environment lightingEnvironment(const Environment& e, const Progress& progress) 
   return {reducedPanorama(e.radiance, kWidestLight, kWidestLight / 2, progress), e.yaw_rad, e.gain};
 }
 
-PreparedLight prepareLight(const Environment& environment, const Progress& progress) {
+PreparedLight prepareLight(const Environment& environment, const Progress& progress, PanoramaLamps lamps) {
   PreparedLight light;
   light.radiance = lightingEnvironment(environment, progress).radiance;
+  if (lamps == PanoramaLamps::Apart) {
+    SplitPanorama split = splitPanorama(light.radiance, progress);
+    light.lamps = std::move(split.lamps);
+    for (LightSource& lamp : light.lamps) lamp.strength *= environment.gain;
+    if (!light.lamps.empty()) light.radiance = std::move(split.rest);
+  }
   for (vec3& p : light.radiance.pixels) p *= environment.gain;
   light.yaw_rad = environment.yaw_rad;
   light.irradiance_sh = irradianceSh(Environment{light.radiance});
@@ -262,6 +269,14 @@ TransferTables LightTurn::of(const TransferTables& tables) const {
   return turned;
 }
 
+std::vector<LightSource> LightTurn::toWorld(std::vector<LightSource> lamps) const {
+  for (LightSource& lamp : lamps) {
+    const vec3 d = lamp.toward;
+    lamp.toward = {cos_ * d.x - sin_ * d.z, d.y, sin_ * d.x + cos_ * d.z};
+  }
+  return lamps;
+}
+
 vec3 irradiance(const PreparedLight& light, vec3 normal) {
   return light.irradiance_map.empty() ? irradiance(light.irradiance_sh, normal)
                                       : lookUp(light.irradiance_map, normal);
@@ -277,21 +292,21 @@ vec3 prefiltered(const PreparedLight& light, vec3 direction, float roughness) {
 }
 
 std::shared_ptr<const PreparedLight> PreparedLights::of(const std::shared_ptr<const Environment>& environment,
-                                                        const Progress& progress) {
+                                                        const Progress& progress, PanoramaLamps lamps) {
   const auto found = [&]() -> std::shared_ptr<const PreparedLight> {
-    std::erase_if(all_, [](const auto& entry) { return entry.first.expired(); });
-    for (const auto& [known, light] : all_)
-      if (known.lock() == environment) return light;
+    std::erase_if(all_, [](const Entry& entry) { return entry.environment.expired(); });
+    for (const Entry& known : all_)
+      if (known.lamps == lamps && known.environment.lock() == environment) return known.light;
     return nullptr;
   };
   {
     const std::lock_guard lock(mutex_);
     if (auto light = found()) return light;
   }
-  auto light = std::make_shared<const PreparedLight>(prepareLight(*environment, progress));
+  auto light = std::make_shared<const PreparedLight>(prepareLight(*environment, progress, lamps));
   const std::lock_guard lock(mutex_);
   if (auto other = found()) return other;  // of a thread that was faster
-  all_.emplace_back(environment, light);
+  all_.push_back({environment, lamps, light});
   return light;
 }
 

@@ -15,6 +15,7 @@
 #include "core/image/image.h"
 #include "core/render/light_transfer.h"
 #include "core/scene/environment.h"
+#include "core/scene/light_source.h"
 
 namespace beam {
 
@@ -28,6 +29,8 @@ struct PreparedLight {
   // GGX-filtered for roughness i / (size - 1); the first is empty: `radiance` itself. Interpolated between.
   std::vector<Image<vec3>> levels;
   TransferTables transfer;  // for surfaces whose visibility is known
+  // Far ones that were taken out of all of the above; none where they are in it.
+  std::vector<LightSource> lamps;
 };
 
 // Of a panorama that light falls from, at most: a wider one lights as its reduced one does.
@@ -35,8 +38,12 @@ inline constexpr int kWidestLight = 4096;
 // The reduced one; as it is where it is not wider.
 Environment lightingEnvironment(const Environment& environment, const Progress& progress = Progress{});
 
+// What of a panorama its lamps (render/panorama_lamps.h) are: part of it, or lights of their own.
+enum class PanoramaLamps { Within, Apart };
+
 // Throws Cancelled when the progress is stopped.
-PreparedLight prepareLight(const Environment& environment, const Progress& progress = Progress{});
+PreparedLight prepareLight(const Environment& environment, const Progress& progress = Progress{},
+                           PanoramaLamps lamps = PanoramaLamps::Within);
 
 // From the world into the panorama's axes; `yaw_rad` comes on top of the environment's own.
 class LightTurn {
@@ -45,6 +52,7 @@ class LightTurn {
   // The tables by coefficients of the world's directions: looked up, as the others, by normals in the
   // panorama's axes.
   TransferTables of(const TransferTables& tables) const;
+  std::vector<LightSource> toWorld(std::vector<LightSource> lamps) const;
   vec3 operator()(vec3 d) const { return {cos_ * d.x + sin_ * d.z, d.y, -sin_ * d.x + cos_ * d.z}; }
 
  private:
@@ -61,11 +69,17 @@ class PreparedLights {
  public:
   // Throws Cancelled when the progress is stopped while it prepares, and keeps nothing then.
   std::shared_ptr<const PreparedLight> of(const std::shared_ptr<const Environment>& environment,
-                                          const Progress& progress = Progress{});
+                                          const Progress& progress = Progress{},
+                                          PanoramaLamps lamps = PanoramaLamps::Within);
 
  private:
+  struct Entry {
+    std::weak_ptr<const Environment> environment;
+    PanoramaLamps lamps = PanoramaLamps::Within;
+    std::shared_ptr<const PreparedLight> light;
+  };
   std::mutex mutex_;
-  std::vector<std::pair<std::weak_ptr<const Environment>, std::shared_ptr<const PreparedLight>>> all_;
+  std::vector<Entry> all_;
 };
 
 // Split-sum factors (Karis 2013) of a smooth dielectric: integral of f_s (n.l) = F0 * x + y. `n_dot_v` in [0,

@@ -15,26 +15,32 @@ void ShadedLamps::forget() {
   bounded_ = false;
 }
 
-void ShadedLamps::forEach(const Lighting& lighting, const ResidentScene& scene, const Progress& progress,
-                          const OnLamps& on_lamps) {
-  std::vector<ShadedLamp> before = std::exchange(lamps_, {});
-  std::size_t bytes = 0;
+std::vector<Lamp> lampsOf(const Lighting& lighting) {
+  std::vector<Lamp> lamps;
   for (const Light& light : lighting.lights) {
     if (!light.enabled) continue;
-    for (const LightSource& source : sourcesOf(light)) {
-      if (source.strength == vec3(0)) continue;
-      progress.check();
-      ShadedLamp lamp{source, castsShadows(light) ? shadowOf(source, scene, before) : nullptr};
-      const std::size_t more = lamp.shadow ? lamp.shadow->bytes() : 0;
-      if (!lamps_.empty() && bytes + more > kMostShadowBytes) {
-        on_lamps(lamps_);
-        lamps_.clear();
-        before.clear();
-        bytes = 0;
-      }
-      bytes += more;
-      lamps_.push_back(std::move(lamp));
+    for (const LightSource& source : sourcesOf(light)) lamps.push_back({source, castsShadows(light)});
+  }
+  return lamps;
+}
+
+void ShadedLamps::forEach(const std::vector<Lamp>& lamps, const ResidentScene& scene,
+                          const Progress& progress, const OnLamps& on_lamps) {
+  std::vector<ShadedLamp> before = std::exchange(lamps_, {});
+  std::size_t bytes = 0;
+  for (const auto& [source, shadows] : lamps) {
+    if (source.strength == vec3(0)) continue;
+    progress.check();
+    ShadedLamp lamp{source, shadows ? shadowOf(source, scene, before) : nullptr};
+    const std::size_t more = lamp.shadow ? lamp.shadow->bytes() : 0;
+    if (!lamps_.empty() && bytes + more > kMostShadowBytes) {
+      on_lamps(lamps_);
+      lamps_.clear();
+      before.clear();
+      bytes = 0;
     }
+    bytes += more;
+    lamps_.push_back(std::move(lamp));
   }
   if (!lamps_.empty()) on_lamps(lamps_);
 }

@@ -18,6 +18,12 @@ class ComputeDevice;
 // Of maps at a time; as many are there of before while lamps move.
 inline constexpr std::size_t kMostShadowBytes = std::size_t(256) << 20;
 
+struct Lamp {
+  LightSource source;
+  bool shadows = true;
+};
+std::vector<Lamp> lampsOf(const Lighting& lighting);  // of its lights that are enabled
+
 struct ShadedLamp {
   LightSource source;
   std::shared_ptr<const ShadowMap> shadow;  // null: nothing keeps it off
@@ -27,11 +33,11 @@ class ShadedLamps {
  public:
   explicit ShadedLamps(ComputeDevice& device);
 
-  // Those that are enabled and shine, in their order, as many at a time as their maps may take memory:
-  // usually all at once, and kept then. `scene` is the one of the call before unless forget() came between.
+  // Those that shine, in their order, as many at a time as their maps may take memory: usually all at once,
+  // and kept then. `scene` is the one of the call before unless forget() came between.
   // Throws Cancelled when the progress is stopped.
   using OnLamps = std::function<void(const std::vector<ShadedLamp>&)>;
-  void forEach(const Lighting& lighting, const ResidentScene& scene, const Progress& progress,
+  void forEach(const std::vector<Lamp>& lamps, const ResidentScene& scene, const Progress& progress,
                const OnLamps& on_lamps);
   void forget();
 

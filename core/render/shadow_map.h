@@ -2,7 +2,9 @@
 // Shadows of Gaussians in the light of one place (methods 7.3), in a form that blending without order draws:
 // nearest depth, and what gets through all. Casters are the Gaussians whose outward side is turned away from
 // the light, as far as that is known: where light leaves a body and not where it falls on it, which leaves
-// nothing for a surface to shadow itself with (BlendRules has the same rule for rays). World axes, metres.
+// nothing for a surface to shadow itself with (BlendRules has the same rule for rays). What gets through
+// counts casters behind a surface as well: one behind a veil and before a body is as dark as the body's back.
+// World axes, metres.
 #pragma once
 
 #include <cstddef>
@@ -51,6 +53,19 @@ struct ShadowMap {
   std::size_t bytes() const;
   // The share of light that comes to a point, [0, 1]: over four texels, each compared for itself.
   float lightAt(vec3 x_m) const;
+  // Of a disc infinitely far, as a parallel view sees it: over a penumbra as wide as the mean of what stands
+  // in the way makes it (percentage-closer soft shadows, Fernando 2005).
+  float lightAt(vec3 x_m, float half_angle_rad) const;
+
+ private:
+  struct Place {  // in the texels of a view
+    std::size_t view = 0;
+    float u = 0, v = 0, z = 0;
+    bool inside = false;
+  };
+  Place placeOf(vec3 x_m) const;
+  bool blocked(const Place& p, std::size_t texel) const { return p.z > texels[p.view].front[texel] + bias_m; }
+  float shareAt(const Place& p) const;
 };
 
 }  // namespace beam

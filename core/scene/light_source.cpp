@@ -89,4 +89,12 @@ ArrivingLight arrivingAt(const LightSource& s, vec3 x_m) {
   return a;
 }
 
+float cosineOfDisc(float cosine, float half_angle_rad) {
+  if (cosine >= half_angle_rad) return cosine;
+  if (cosine <= -half_angle_rad) return 0;
+  const float s = cosine / half_angle_rad, chord = std::sqrt(1 - s * s);
+  return half_angle_rad *
+         (s * (0.5f + (std::asin(s) + s * chord) / kPi) + 2 / (3 * kPi) * chord * chord * chord);
+}
+
 }  // namespace beam

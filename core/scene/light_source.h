@@ -19,9 +19,10 @@ struct LightSource {
   bool far = false;      // in the direction `toward`, infinitely far; false: at `position_m`
   vec3 toward{0, 1, 0};  // unit
   vec3 position_m{0};
-  vec3 strength{0};    // far: irradiance of what faces it; else radiant intensity along `axis`
-  vec3 axis{0, 0, 0};  // unit, the way it shines; 0: to all sides
-  float range_m = 0;   // of its window; 0: without end
+  vec3 strength{0};          // far: irradiance of what faces it; else radiant intensity along `axis`
+  vec3 axis{0, 0, 0};        // unit, the way it shines; 0: to all sides
+  float range_m = 0;         // of its window; 0: without end
+  float half_angle_rad = 0;  // of a far one: of the disc that it is, which softens its shadows; 0: a point
   // With an axis. A cone: whole up to `inner_rad` from it, nothing past `outer_rad`, of which the inner one
   // is never more. Else it is flat: the cosine with the axis weakens it.
   bool cone = false;
@@ -46,5 +47,9 @@ struct ArrivingLight {
   vec3 irradiance{0};  // of what faces it
 };
 ArrivingLight arrivingAt(const LightSource& source, vec3 x_m);
+
+// The mean of max(0, n.w) over a small even disc whose middle lies at that cosine from n: it sets behind a
+// surface little by little (methods 7.9).
+float cosineOfDisc(float cosine, float half_angle_rad);
 
 }  // namespace beam
