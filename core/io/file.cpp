@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <iterator>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -39,11 +40,6 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
-  int close() {
-    const int fd = fd_;
-    fd_ = -1;
-    return ::close(fd);
-  }
 
  private:
   int fd_;
@@ -96,36 +92,21 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
 
 std::atomic<unsigned> temporary_files{0};
 
+std::filesystem::path folderOf(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
 // A new file beside `path`, open; its name goes into `temporary`. A killed process of our number, which in
 // containers comes again and again, may have left some of these names.
-int createBeside(const std::filesystem::path& path, const std::filesystem::path& folder,
-                 std::filesystem::path& temporary) {
+int createBeside(const std::filesystem::path& path, std::filesystem::path& temporary) {
   for (int left_over = 0; left_over < 10000; ++left_over) {
-    temporary =
-        folder / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), temporary_files++);
+    temporary = folderOf(path) /
+                fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), temporary_files++);
     const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (file >= 0) return file;
     if (errno != EEXIST) break;
   }
   storageError("create a file beside", path);
-}
-
-// `write` is given the open file.
-template <class Write>
-void replaceFile(const std::filesystem::path& path, Write&& write) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::filesystem::path temporary;
-  Descriptor file(createBeside(path, folder, temporary));
-  try {
-    write(file.get());
-    if (::fsync(file.get()) != 0) storageError("sync", path);
-    if (file.close() != 0) storageError("close", path);
-    if (::rename(temporary.c_str(), path.c_str()) != 0) storageError("rename into", path);
-  } catch (...) {
-    ::unlink(temporary.c_str());
-    throw;
-  }
-  syncPath(folder);
 }
 
 }  // namespace
@@ -150,8 +131,26 @@ void syncPath(const std::filesystem::path& path) {
   if (::fsync(file.get()) != 0 && errno != EINVAL) storageError("sync", path);
 }
 
+UnpublishedFile::UnpublishedFile(std::filesystem::path path)
+    : path_(std::move(path)), descriptor_(createBeside(path_, name_)) {}
+
+UnpublishedFile::~UnpublishedFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!name_.empty()) ::unlink(name_.c_str());
+}
+
+void UnpublishedFile::publish() {
+  if (::fsync(descriptor_) != 0) storageError("sync", path_);
+  if (::close(std::exchange(descriptor_, -1)) != 0) storageError("close", path_);
+  if (::rename(name_.c_str(), path_.c_str()) != 0) storageError("rename into", path_);
+  name_.clear();
+  syncPath(folderOf(path_));
+}
+
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  replaceFile(path, [&](int fd) { writeAll(fd, bytes, path); });
+  UnpublishedFile file(path);
+  writeAll(file.descriptor(), bytes, path);
+  file.publish();
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text) {
@@ -159,16 +158,16 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
 }
 
 void writeFileAtomically(const std::filesystem::path& path, const std::function<std::string_view()>& next) {
-  replaceFile(path, [&](int fd) {
-    std::size_t unsynced = 0;
-    for (std::string_view piece = next(); !piece.empty(); piece = next()) {
-      writeAll(fd, std::as_bytes(std::span(piece.data(), piece.size())), path);
-      unsynced += piece.size();
-      if (unsynced < kUnsynced) continue;
-      if (::fdatasync(fd) != 0) storageError("sync", path);
-      unsynced = 0;
-    }
-  });
+  UnpublishedFile file(path);
+  std::size_t unsynced = 0;
+  for (std::string_view piece = next(); !piece.empty(); piece = next()) {
+    writeAll(file.descriptor(), std::as_bytes(std::span(piece.data(), piece.size())), path);
+    unsynced += piece.size();
+    if (unsynced < kUnsynced) continue;
+    if (::fdatasync(file.descriptor()) != 0) storageError("sync", path);
+    unsynced = 0;
+  }
+  file.publish();
 }
 
 Error readError(const std::filesystem::path& path, int error_number) {

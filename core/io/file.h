@@ -37,6 +37,27 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
 // it is soon asked again, what there is goes to the disk as it comes.
 void writeFileAtomically(const std::filesystem::path& path, const std::function<std::string_view()>& next);
 
+// A file that another program or library writes by name: it lies empty in the folder of `path`, under a name
+// of its own, until publish() puts it there as writeFileAtomically does, and is gone where that is not
+// called.
+class UnpublishedFile {
+ public:
+  // Throws Error{Storage} where nothing can be written beside `path`.
+  explicit UnpublishedFile(std::filesystem::path path);
+  ~UnpublishedFile();
+  UnpublishedFile(const UnpublishedFile&) = delete;
+  UnpublishedFile& operator=(const UnpublishedFile&) = delete;
+
+  const std::filesystem::path& name() const { return name_; }
+  int descriptor() const { return descriptor_; }  // open for writing
+  // Once, when all is written: fsync, rename, fsync of the folder. Throws Error{Storage}.
+  void publish();
+
+ private:
+  std::filesystem::path path_, name_;
+  int descriptor_ = -1;
+};
+
 // Syncs a file or folder that was written otherwise; Error{Storage} on failure.
 void syncPath(const std::filesystem::path& path);
 

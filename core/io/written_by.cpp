@@ -5,6 +5,8 @@
 
 #include <fstream>
 
+#include "core/io/movie_file.h"
+
 namespace beam {
 namespace {
 
@@ -40,7 +42,7 @@ bool isWrittenBy(const std::filesystem::path& file, std::string_view command) {
   beginning.resize(static_cast<std::size_t>(in.gcount()));
   for (const auto& [magic, words] : signaturesOf(writerOf(command)))
     if (beginning.starts_with(magic)) return beginning.find(words) != std::string::npos;
-  return false;
+  return noteIn(notesOfMovie(file), "Software") == writerOf(command);
 }
 
 std::string noteIn(const FileNotes& notes, std::string_view name) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a file says of the command that wrote it, so that a command replaces its own files and nobody else's.
 // It stands near the beginning of a file: a text chunk of PNG, an attribute of EXR, a comment of PLY, a meta
-// element of HTML, a member of JSON.
+// element of HTML, a member of JSON; in the comment of an MP4, wherever that is.
 #pragma once
 
 #include <filesystem>
