@@ -107,6 +107,34 @@ void addSights(const GaussianCloud& cloud, std::span<const vec3> axes, const Cam
   }
 }
 
+// Every third bit, of ten.
+std::uint32_t spread(std::uint32_t v) {
+  v = (v | v << 16) & 0x030000ff;
+  v = (v | v << 8) & 0x0300f00f;
+  v = (v | v << 4) & 0x030c30c3;
+  return (v | v << 2) & 0x09249249;
+}
+
+// Along a Morton curve: rays that are traced one after the other meet the same part of the tree, which then
+// is in the caches. Results do not depend on it.
+std::vector<std::uint32_t> spatialOrder(std::span<const vec3> points) {
+  vec3 low(kEndless_m), high(-kEndless_m);
+  for (const vec3& p : points) low = glm::min(low, p), high = glm::max(high, p);
+  const vec3 scale = 1023.0f / glm::max(high - low, vec3(1e-9f));
+  std::vector<std::uint64_t> keyed(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const vec3 cell = (points[i] - low) * scale;
+    const std::uint64_t key = spread(static_cast<std::uint32_t>(cell.x)) << 2 |
+                              spread(static_cast<std::uint32_t>(cell.y)) << 1 |
+                              spread(static_cast<std::uint32_t>(cell.z));
+    keyed[i] = key << 32 | i;
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::uint32_t> order(keyed.size());
+  for (std::size_t i = 0; i < keyed.size(); ++i) order[i] = static_cast<std::uint32_t>(keyed[i]);
+  return order;
+}
+
 // World from local, turned about the normal by chance: neighbours err in other directions.
 mat3 frameOf(vec3 normal, float angle) {
   const Frame3 f(normal);
@@ -151,6 +179,7 @@ ShBlock bakeVisibility(const GaussianCloud& cloud, const SeenSurface& surface,
   const RandomStream random(options.seed, 0x76697369);
   const auto offset = static_cast<float>(options.offset_m);
   const auto per = static_cast<std::size_t>(options.rays);
+  const std::vector<std::uint32_t> order = spatialOrder(surface.position_m);
   ShBlock out(cloud.size(), 1);
   progress.expect(static_cast<std::int64_t>(cloud.size()));
   for (std::size_t band = 0; band < cloud.size(); band += kBand) {
@@ -160,7 +189,8 @@ ShBlock bakeVisibility(const GaussianCloud& cloud, const SeenSurface& surface,
       std::vector<Ray> rays;
       rays.reserve((end - begin) * per);
       std::vector<mat3> frames;
-      for (std::size_t i = band + begin; i < band + end; ++i) {
+      for (std::size_t k = band + begin; k < band + end; ++k) {
+        const std::uint32_t i = order[k];
         frames.push_back(frameOf(surface.normal[i], 2 * kPi * random.uniform(i)));
         const vec3 origin = surface.position_m[i] + offset * surface.normal[i];
         for (const vec3& d : fit.localRays()) rays.push_back({origin, frames.back() * d});
@@ -171,7 +201,7 @@ ShBlock bakeVisibility(const GaussianCloud& cloud, const SeenSurface& surface,
       for (std::size_t i = 0; i < end - begin; ++i) {
         for (std::size_t r = 0; r < per; ++r)
           open[static_cast<Eigen::Index>(r)] = blocked[i * per + r] ? 0.0f : 1.0f;
-        fit.coefficients(open, frames[i], out.of(band + begin + i));
+        fit.coefficients(open, frames[i], out.of(order[band + begin + i]));
       }
     });
     progress.step(static_cast<std::int64_t>(count));
