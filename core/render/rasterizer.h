@@ -35,7 +35,7 @@ struct RasterImages {
   Planes color;         // 3: sum w c + T background, c = max(0, 0.5 + SH)
   Planes alpha;         // 1: sum w = 1 - T
   Planes depth;         // 1: expected z, (sum w z) / (sum w); 0 where nothing
-  Planes median_depth;  // 1: z of the last Gaussian met while T > 0.5 before it; 0 where nothing
+  Planes median_depth;  // 1: z of the Gaussian at which T falls to 0.5; 0 where it stays above
   Planes
       normal;  // 3: sum w n in camera axes, not normalised; n = -normalize(Sigma_c^-1 t), towards the camera
   Planes extra;  // extra_channels: sum w x

@@ -49,6 +49,7 @@ std::vector<LightSource> placesOf(const RectangleLight& l) {
   const dmat3 world_from_light = aimed(l.position_m, l.target_m, l.roll_deg);
   const double share_m2 = l.width_m * l.height_m / kRectanglePoints;
   std::vector<LightSource> places;
+  static_assert(kRectanglePoints == 8, "v below turns three bits around");
   for (int i = 0; i < kRectanglePoints; ++i) {
     // Hammersley's points about their mean.
     const double u = (i + 0.5) / kRectanglePoints - 0.5;

@@ -12,6 +12,7 @@
 
 #include "core/optim/gaussian_model.h"
 #include "core/render/cpu_scene_renderer.h"
+#include "core/render/reference_scene_renderer.h"
 #include "core/scene/environment.h"
 #include "core/scene/thin_axis.h"
 #include "tests/support/capsule_man.h"
@@ -148,7 +149,13 @@ void lamps(int width, int height) {
     renderer->load(scene);
     renderer->draw(camera, asked, progress, [&](RenderedPicture p) { shown = std::move(p); });
   };
-  Times moved, shadowed, open, turned;
+  // Four suns: what there is of lamps in a panorama, at most.
+  Image<vec3> sunny(512, 256, vec3(1), Encoding::Linear);
+  for (int i = 0; i < 4; ++i)
+    for (int y = 60; y < 66; ++y)
+      for (int x = 0; x < 6; ++x) sunny(40 + 120 * i + x, y + 10 * i) = vec3(300);
+  const auto plain = scene.environment, suns = std::make_shared<const Environment>(makeEnvironment(sunny));
+  Times moved, shadowed, open, turned, suns_turned;
   for (int i = 0; i < kRounds; ++i) {
     sun.shadows = true;
     draw();
@@ -164,13 +171,56 @@ void lamps(int width, int height) {
     draw();
     scene.lighting.environment.rotation_deg += 6;
     turned.add(draw);
+    scene.environment = suns;
+    draw();
+    scene.lighting.environment.rotation_deg += 6;
+    suns_turned.add(draw);
+    scene.environment = plain;
     scene.lighting.lights[0].enabled = true;
   }
   std::printf(
       "relit at %dx%d, CPU ms (wall ms): new camera %s; shadowed lamp turned %s; lamp without shadows %s; "
-      "panorama turned %s\n",
+      "panorama turned %s; panorama with four lamps turned %s\n",
       width, height, moved.text().c_str(), shadowed.text().c_str(), open.text().c_str(),
-      turned.text().c_str());
+      turned.text().c_str(), suns_turned.text().c_str());
+}
+
+// The reference at the size of a photograph: a primary hit, its light, one bounce and its light are a path.
+void reference() {
+  constexpr int kPaths = 8;
+  const auto cloud = std::make_shared<const GaussianCloud>(testing::capsuleCloud(kGaussians));
+  const std::shared_ptr<ComputeDevice> device = makeCpuDevice();
+  RenderScene scene;
+  scene.instances = testing::sceneOf(cloud, testing::randomMaterials(kGaussians, 3, 0.05f, 0.5f));
+  scene.instances[0].attributes = bakedAttributes(*cloud);
+  scene.environment =
+      std::make_shared<const Environment>(makeEnvironment(Image<vec3>(64, 32, vec3(1), Encoding::Linear)));
+  const Camera camera = testing::capsuleCamera(480, 640);
+  const ChannelInfo asked[] = {channelOf(kRelightChannel), channelOf(kAlphaChannel)};
+  double covered = 0;
+  const auto timeOf = [&](int samples, int bounces) {
+    const auto renderer =
+        newReferenceSceneRenderer(device, {.samples = samples, .bounces = bounces, .denoise = false});
+    renderer->load(scene);
+    Progress progress;
+    Times times;
+    times.add([&] {
+      renderer->draw(camera, asked, progress, [&](const RenderedPicture& p) {
+        covered = static_cast<double>(std::count_if(p.channels[1].values->values.begin(),
+                                                    p.channels[1].values->values.end(),
+                                                    [](float a) { return a > 0.5f; }));
+      });
+    });
+    return times;
+  };
+  timeOf(1, 1);  // builds what is kept of the device
+  Times first = timeOf(1, 1), more = timeOf(1 + kPaths, 1), whole = timeOf(1 + kPaths, 2), one = timeOf(1, 2);
+  const double cpu_s = 1e-3 * (more.median() - first.median());
+  std::printf(
+      "reference at 480x640, %.0f pixels covered: %.3f million paths a CPU second; 128 paths of two bounces "
+      "a "
+      "pixel are %.0f CPU s\n",
+      covered, 1e-6 * covered * kPaths / cpu_s, 16e-3 * (whole.median() - one.median()));
 }
 
 }  // namespace
@@ -178,6 +228,7 @@ void lamps(int width, int height) {
 int main() {
   lamps(1920, 1080);
   lamps(1280, 720);
+  reference();
   pictures();
   training();
 }
