@@ -31,9 +31,10 @@ struct RenderFlags {
   std::string project, channels = "rgb", cameras, frames = "all", environment;
   std::string frame_of = "capture", out;
   std::vector<std::string> set;
-  std::string renderer = "cpu", size, look;
+  std::string renderer = "cpu", size, look, camera_path;
+  double duration_s = 0, rate = 0;
   int samples = ReferenceOptions{}.samples;
-  bool no_denoise = false, tells_samples = false;
+  bool no_denoise = false, tells_samples = false, tells_duration = false, tells_rate = false;
   bool names_cameras = false, names_channels = false, layers = false, skip_existing = false, force = false,
        strict = false;
   DeviceChoice device;
@@ -106,6 +107,7 @@ void refuseBesideLook(const RenderFlags& flags) {
                                                 {"--environment", !flags.environment.empty()},
                                                 {"--set", !flags.set.empty()},
                                                 {"--layers", flags.layers},
+                                                {"--frame-of", wantsWorld(flags.frame_of)},
                                                 {"--skip-existing", flags.skip_existing}};
   for (const auto& [flag, is_typed] : typed) {
     if (is_typed)
@@ -114,23 +116,32 @@ void refuseBesideLook(const RenderFlags& flags) {
   }
 }
 
+std::string writtenText(const RenderLookOutcome& outcome, const RenderFlags& flags) {
+  if (outcome.cameras > 0)
+    return fmt::format("wrote {} of {} and {} to \"{}\"", outcome.folder,
+                       countText(outcome.cameras, "camera"), countText(outcome.frames, "frame"), flags.out);
+  return fmt::format("wrote {} of {}{} to \"{}\"", countText(outcome.pictures, "picture"), outcome.folder,
+                     outcome.film.empty() ? "" : fmt::format(" and the film {}", outcome.film), flags.out);
+}
+
 int runLook(const RenderFlags& flags, const Project& project, CommandContext& context) {
   refuseBesideLook(flags);
   RenderLookRequest request{.project = project,
                             .look = chosenLook(project, flags.look),
                             .cameras = flags.names_cameras ? flags.cameras : usualCameras(project.capture()),
                             .frames = flags.frames,
+                            .camera_path = flags.camera_path,
                             .out = flags.out,
                             .force = flags.force,
                             .strict = flags.strict};
   if (!flags.size.empty()) request.size = parsePictureSize(flags.size);
+  if (flags.tells_duration) request.timing.duration_s = flags.duration_s;
+  if (flags.tells_rate) request.timing.rate = flags.rate;
   const std::unique_ptr<SceneRenderer> renderer = rendererOf(flags, project, makeDevice(flags.device));
   Progress progress(context.stop, context.console.listener());
   const RenderLookOutcome outcome = renderLook(request, *renderer, progress);
   context.console.endProgress();
-  context.console.print(fmt::format("wrote {} of {} and {} to \"{}\"", outcome.folder,
-                                    countText(outcome.cameras, "camera"), countText(outcome.frames, "frame"),
-                                    flags.out));
+  context.console.print(writtenText(outcome, flags));
   tellInterpolated(outcome.interpolated, context.console);
   return 0;
 }
@@ -138,6 +149,9 @@ int runLook(const RenderFlags& flags, const Project& project, CommandContext& co
 int runRender(const RenderFlags& flags, CommandContext& context) {
   Project project = Project::open(flags.project, context.services.pipeline);
   if (!flags.look.empty()) return runLook(flags, project, context);
+  if (!flags.camera_path.empty() || flags.tells_duration || flags.tells_rate)
+    throw Error(Error::Kind::Usage,
+                "--camera-path, --duration and --rate are of a look: add --look NAME|FILE");
   for (const std::string& assignment : flags.set) setForPictures(project, assignment);
   RenderFramesRequest request{
       .project = project,
@@ -228,6 +242,19 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
                    "file; see beam help looks")
       ->type_name("NAME|FILE");
   command
+      ->add_option("--camera-path", flags->camera_path,
+                   "A camera that moves, of a look: once around the subject (turntable) from the first of "
+                   "--cameras, or a file's keys; pictures and a film; see beam help looks")
+      ->default_str("the look's own")
+      ->type_name("turntable|none|FILE");
+  CLI::Option* duration =
+      command->add_option("--duration", flags->duration_s, "Seconds of a camera that moves")
+          ->default_str("that of its keys; of a turntable 10")
+          ->type_name("S");
+  CLI::Option* rate = command->add_option("--rate", flags->rate, "Pictures a second of a camera that moves")
+                          ->default_str("the take's, of one frame 30")
+                          ->type_name("N");
+  command
       ->add_option("--renderer", flags->renderer,
                    "cpu: in real time; reference: light followed path by path, which that is judged by, with "
                    "the channels direct, indirect and variance")
@@ -258,11 +285,13 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   addStrictFlag(*command, flags->strict);
   addForceFlag(*command, flags->force);
   addDeviceFlags(*command, flags->device);
-  command->callback([flags, &context, cameras = command->get_option("--cameras"),
+  command->callback([flags, &context, duration, rate, cameras = command->get_option("--cameras"),
                      samples = command->get_option("--spp"), channels = command->get_option("--channels")] {
     flags->names_channels = channels->count() > 0;
     flags->names_cameras = cameras->count() > 0;
     flags->tells_samples = samples->count() > 0;
+    flags->tells_duration = duration->count() > 0;
+    flags->tells_rate = rate->count() > 0;
     context.action = [flags, &context] { return runRender(*flags, context); };
   });
 }

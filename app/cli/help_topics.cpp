@@ -10,6 +10,7 @@
 #include "app/cli/help_page.h"
 #include "app/cli/json_keys.h"
 #include "core/base/field_text.h"
+#include "core/scene/camera_track.h"
 #include "core/scene/channel.h"
 #include "core/scene/look.h"
 #include "core/work/export_frames.h"
@@ -82,7 +83,8 @@ std::string filesText() {
   for (const ChannelInfo& channel : channels()) page.row(folderText(channel), channelText(channel));
   page.row("look_<name>",
            "In place of channels, with --look: as the look's view transform says, PNG with what is behind or "
-           "straight alpha, or EXR, half float, R G B A, premultiplied. See beam help looks.");
+           "straight alpha, or EXR, half float, R G B A, premultiplied. Of a camera that moves "
+           "look_<name>/<path>/000000.png and on, and the film look_<name>/<path>.mp4. See beam help looks.");
   page.blank();
   page.paragraph(
       "Every other EXR has either R, G and B or one channel Y, without layers, so that every reader takes "
@@ -188,6 +190,7 @@ std::string environmentText() {
       "BEAM_LOCAL_LOCKS",
       "1: write to a project on a network disk whose locks other machines do not see (exit code 69 else), "
       "while none of them works in it");
+  page.row("PATH", "where ffmpeg is looked for, which films are written with");
   page.row("TMPDIR", "where beam evaluate puts pictures for a moment; else /tmp");
   page.blank();
   page.paragraph(
@@ -295,7 +298,30 @@ std::string looksText() {
       "\"curves\" drives numbers and switches by their paths, lights.sun.intensity or "
       "environment.rotation_deg: {\"keys\": [{\"time_s\": 0, \"value\": 0}, {\"time_s\": 2, \"value\": "
       "90}]}. "
-      "A frame has the time of its place in the capture over the rate.",
+      "A frame has the time of its place in the capture over the rate, a picture of a film its own.",
+      2);
+  page.heading("Films (--camera-path)");
+  page.row("turntable", "once around the subject in --duration, from the first of --cameras");
+  page.row("FILE",
+           "keys of a camera, which goes through them: {\"format\": {\"name\": \"beam-camera-path\", "
+           "\"major\": 1, \"minor\": 0}, \"keys\": [{\"time_s\": 0, \"position_m\": {\"x\": 0, "
+           "\"y\": 1.5, \"z\": 3}, \"target_m\": {\"x\": 0, \"y\": 1, \"z\": 0}}, ...]}");
+  page.row("none", "the cameras stand, though the look has a path");
+  page.blank();
+  page.paragraph(
+      "Pictures are OUT/look_<name>/<path>/000000.png and on, the film is OUT/look_<name>/<path>.mp4 (H.264, "
+      "by the installed program ffmpeg; without it there are the pictures alone). The take plays at its own "
+      "rate, to and fro until the time is over; one frame stands.",
+      2);
+  page.heading("Of a key of a camera");
+  fieldRows(fieldsOf(CameraKey{}), page);
+  page.heading("Scenes");
+  page.paragraph(
+      "--look takes a scene file, too: {\"format\": {\"name\": \"beam-scene\", \"major\": 1, \"minor\": 0}, "
+      "\"performances\": [{\"project\": {\"relative\": \"Other.beam\"}, \"scene_from_performance\": "
+      "{\"translation_m\": {\"x\": 1}}}], \"look\": {...}}. Its projects lie relative to it; cameras and "
+      "times "
+      "are those of PROJECT.",
       2);
   return page.text();
 }

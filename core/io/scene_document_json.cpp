@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "core/base/json_words.h"
 #include "core/io/described_json.h"
 #include "core/io/look_value.h"
 #include "core/scene/described_values.h"
@@ -126,6 +127,16 @@ std::string toJson(const SceneDocument& document) {
   j["look"] = lookToValue(document.look);
   putUnknown(j, document.unknown);
   return documentText(kFormat, j);
+}
+
+bool isSceneDocument(std::string_view json) {
+  try {
+    const Json members = Json::parse(json, shallowJson<Json>);
+    if (!members.is_object() || !members.contains("format") || !members["format"].is_object()) return false;
+    return members["format"].value("name", Json()) == kFormat;
+  } catch (const Json::exception&) {
+    return false;
+  }
 }
 
 SceneDocument parseSceneDocument(std::string_view json, std::string_view where) {

@@ -12,6 +12,8 @@
 namespace beam {
 
 std::string toJson(const SceneDocument& document);
+// Whether it says that it is one, of whichever version; false for what is no JSON.
+bool isSceneDocument(std::string_view json);
 // Throws Error{Data} that names `where`, the place in it, what was expected and found; also for a document
 // that is not valid or of a newer major format.
 SceneDocument parseSceneDocument(std::string_view json, std::string_view where);

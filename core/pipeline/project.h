@@ -55,6 +55,7 @@ class Project {
   const std::filesystem::path& folder() const { return folder_; }
   std::string name() const;  // of the folder, without ".beam"
   const PipelineSetup& setup() const { return *setup_; }
+  const std::shared_ptr<const PipelineSetup>& sharedSetup() const { return setup_; }  // for another project
   // Whether results and settings can be written; opening and looking work without.
   bool readOnly() const;
 

@@ -67,17 +67,25 @@ std::string_view lookFileExtension(const Look& look) {
   return "png";
 }
 
-void writeLookPicture(const std::filesystem::path& file, const Planes& relit, const Planes& alpha,
-                      const Look& look, const Behind& behind, const FileNotes& notes) {
+LookPicture lookPicture(const Planes& relit, const Planes& alpha, const Look& look, const Behind& behind) {
   const Image<vec3> backdrop = backdropOf(look, behind);
-  const Planes picture = exposed(relit, alpha, backdrop, look.exposure_stops);
-  if (look.view_transform == kRawTransform)
-    return writeExr(file, picture, {"R", "G", "B", "A"}, ExrPrecision::Half, notes);
-  const ViewTransform transform = viewTransformOf(look.view_transform);
-  if (backdrop.empty())
-    writePng(file, shown<u8vec4>(picture, transform), notes);
+  return {exposed(relit, alpha, backdrop, look.exposure_stops), look.view_transform, !backdrop.empty()};
+}
+
+void writeLookPicture(const std::filesystem::path& file, const LookPicture& picture, const FileNotes& notes) {
+  if (picture.view_transform == kRawTransform)
+    return writeExr(file, picture.light, {"R", "G", "B", "A"}, ExrPrecision::Half, notes);
+  const ViewTransform transform = viewTransformOf(picture.view_transform);
+  if (picture.opaque)
+    writePng(file, shown<u8vec3>(picture.light, transform), notes);
   else
-    writePng(file, shown<u8vec3>(picture, transform), notes);
+    writePng(file, shown<u8vec4>(picture.light, transform), notes);
+}
+
+Image<u8vec3> onBlack(const LookPicture& picture) {
+  Planes light = picture.light;
+  std::fill_n(light.plane(3), light.values.size() / 4, 1.0f);
+  return shown<u8vec3>(light, viewTransformOf(picture.view_transform));
 }
 
 }  // namespace beam

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "core/image/image.h"
@@ -24,10 +25,20 @@ struct Behind {
   const Environment* panorama = nullptr;  // as it was opened; null: none
 };
 
-// `relit`: 3 planes, scene-linear, premultiplied; `alpha`: 1. `look`: of the moment, without curves. PNG is 8
-// bits, sRGB as the view transform says, with straight alpha where nothing is behind; EXR half precision, R G
-// B A, premultiplied, scene-linear times the exposure, at most 65504. Throws Error{Storage}.
-void writeLookPicture(const std::filesystem::path& file, const Planes& relit, const Planes& alpha,
-                      const Look& look, const Behind& behind, const FileNotes& notes);
+struct LookPicture {
+  Planes light;                // R G B A, premultiplied, scene-linear times the exposure, at most 65504
+  std::string view_transform;  // of the look
+  bool opaque = false;         // something is behind everywhere
+};
+
+// `relit`: 3 planes, scene-linear, premultiplied; `alpha`: 1. `look`: of the moment, without curves.
+LookPicture lookPicture(const Planes& relit, const Planes& alpha, const Look& look, const Behind& behind);
+
+// PNG of 8 bits, sRGB as the view transform says, with straight alpha where it is not opaque; of raw EXR,
+// half precision. Throws Error{Storage}.
+void writeLookPicture(const std::filesystem::path& file, const LookPicture& picture, const FileNotes& notes);
+
+// For films, which have no alpha; not of raw.
+Image<u8vec3> onBlack(const LookPicture& picture);
 
 }  // namespace beam

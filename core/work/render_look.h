@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a project's frames as a look shows them: OUT/look_<name>/<camera>/<frame>.png, or .exr where
-// the look's view transform is raw.
+// Pictures of a project's frames, or of a scene file, as a look shows them: of the capture's cameras as
+// OUT/look_<name>/<camera>/<frame>.png, of one that moves as OUT/look_<name>/<path>/000000.png and as the
+// film OUT/look_<name>/<path>.mp4. In place of .png .exr where the look's view transform is raw, without a
+// film.
 #pragma once
 
 #include <filesystem>
@@ -11,39 +13,37 @@
 #include "core/base/progress.h"
 #include "core/pipeline/project.h"
 #include "core/render/scene_renderer.h"
-#include "core/scene/look.h"
+#include "core/work/look_scene.h"
+#include "core/work/look_shots.h"
 
 namespace beam {
-
-struct ChosenLook {
-  Look look;                     // with a name that is one
-  std::filesystem::path folder;  // that its references are relative to
-};
-// `words`: the name of a look of the project, else a file; one without a name takes the file's. Throws
-// Error{Usage} where it is neither, and what parseLook throws.
-ChosenLook chosenLook(const Project& project, const std::string& words);
 
 struct RenderLookRequest {
   Project project;
   ChosenLook look;
-  std::string cameras = "test";    // of selectViews
+  std::string cameras =
+      "test";  // of selectViews; a film has the size of the first, and of a turntable its place
   std::string frames = "all";      // of selectSolvedFrames
   std::optional<ivec2> size = {};  // as of RenderFramesRequest
+  std::string camera_path = {};    // of chosenPath
+  FilmTiming timing = {};
   std::filesystem::path out;
   bool force = false;   // of OutputRule
   bool strict = false;  // of WantedResults
 };
 
 struct RenderLookOutcome {
-  std::string folder;  // below `out`
-  std::size_t cameras = 0, frames = 0;
+  std::string folder;                   // below `out`
+  std::size_t cameras = 0, frames = 0;  // of the capture; of a film no cameras
+  std::size_t pictures = 0;
+  std::string film = {};  // its file below `out`; empty: there is none
   std::vector<std::string> interpolated;
 };
 
-// A frame is lit as the look is at its time: its place in the capture over the rate. Logs what of the look
-// has no effect. Throws Error{Usage} for words that choose nothing, a view transform that is not drawn, a
-// look in which nothing shines, and a place that requireFolderTarget refuses; Error{Data} when a frame has no
-// materials or the panorama is gone; Error{Storage}, Cancelled: the pictures that were done are left, whole.
+// Logs what of the look has no effect, and what of the scene is not seen as it is meant. Throws Error{Usage}
+// for words that choose nothing, a view transform that is not drawn, a look in which nothing shines, and a
+// place that requireFolderTarget refuses; Error{Data} when a frame has no materials or the panorama is gone;
+// Error{Storage}, Cancelled: the pictures that were done are left, whole, and no film.
 RenderLookOutcome renderLook(const RenderLookRequest& request, SceneRenderer& renderer, Progress& progress);
 
 }  // namespace beam

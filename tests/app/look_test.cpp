@@ -101,5 +101,18 @@ TEST_F(RenderLook, OfALaterVersionIsDrawnAsFarAsItIsKnown) {
   EXPECT_THAT(said.err, HasSubstr("tube"));
 }
 
+TEST_F(RenderLook, FilmsACameraThatMoves) {
+  const fs::path look = write("a.json", R"("name": "stage")");
+  const Said said =
+      draw(look, {"--camera-path", "turntable", "--duration", "0.2", "--rate", "10", "--size", "40x60"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("wrote 2 pictures of look_stage"));
+  const ImageSize size = readImageSize(at("out/look_stage/turntable/000001.png"));
+  EXPECT_EQ(size.width, 40);
+  EXPECT_EQ(size.height, 60);
+  EXPECT_EQ(draw(look, {"--camera-path", "nowhere"}).code, 2);
+  EXPECT_THAT(draw(look, {"--duration", "3"}).err, HasSubstr("add --camera-path"));
+}
+
 }  // namespace
 }  // namespace beam::testing

@@ -35,11 +35,11 @@ struct HalfCovered {
   }
 };
 
-class LookPicture : public ::testing::Test {
+class LookPictures : public ::testing::Test {
  protected:
   fs::path written(const Look& look, const Environment* panorama = nullptr) {
     const fs::path file = folder_.path() / fmt::format("{}.{}", ++count_, lookFileExtension(look));
-    writeLookPicture(file, view_.relit, view_.alpha, look, {view_.camera, panorama}, {});
+    writeLookPicture(file, lookPicture(view_.relit, view_.alpha, look, {view_.camera, panorama}), {});
     return file;
   }
   TempDir folder_;
@@ -47,7 +47,7 @@ class LookPicture : public ::testing::Test {
   int count_ = 0;
 };
 
-TEST_F(LookPicture, HasStraightAlphaWhereNothingIsBehind) {
+TEST_F(LookPictures, HasStraightAlphaWhereNothingIsBehind) {
   Look look;
   look.exposure_stops = 1;
   const fs::path file = written(look);
@@ -59,7 +59,7 @@ TEST_F(LookPicture, HasStraightAlphaWhereNothingIsBehind) {
   EXPECT_EQ(alpha(30, 3), 0);
 }
 
-TEST_F(LookPicture, StandsBeforeAColour) {
+TEST_F(LookPictures, StandsBeforeAColour) {
   Look look;
   look.background.kind = "color";
   look.background.color = dvec3(0.4, 0, 0);
@@ -71,7 +71,7 @@ TEST_F(LookPicture, StandsBeforeAColour) {
   EXPECT_EQ(photo(30, 3), u8vec3(byteOf(srgbFromLinear(0.4f)), 0, 0));
 }
 
-TEST_F(LookPicture, StandsBeforeThePanoramaAsItIsTurned) {
+TEST_F(LookPictures, StandsBeforeThePanoramaAsItIsTurned) {
   Image<vec3> sky(64, 32, vec3(0.1f), Encoding::Linear);
   for (int y = 0; y < 32; ++y)
     for (int x = 28; x < 36; ++x) sky(x, y) = vec3(0.5f);  // +Z, which the camera looks along
@@ -84,7 +84,13 @@ TEST_F(LookPicture, StandsBeforeThePanoramaAsItIsTurned) {
   EXPECT_EQ(readPhoto(written(look, &panorama))(17, 12), u8vec3(byteOf(srgbFromLinear(0.2f))));
 }
 
-TEST_F(LookPicture, IsRawInOpenExr) {
+TEST_F(LookPictures, IsOnBlackInAFilm) {
+  Look look;
+  EXPECT_EQ(onBlack(lookPicture(view_.relit, view_.alpha, look, {view_.camera}))(3, 3),
+            u8vec3(byteOf(srgbFromLinear(0.1f))));
+}
+
+TEST_F(LookPictures, IsRawInOpenExr) {
   Look look;
   look.view_transform = kRawTransform;
   look.exposure_stops = -1;
@@ -96,7 +102,7 @@ TEST_F(LookPicture, IsRawInOpenExr) {
   EXPECT_EQ(p.plane(1)[30], 0);
 }
 
-TEST_F(LookPicture, IsFiniteHoweverBrightItsLightIs) {
+TEST_F(LookPictures, IsFiniteHoweverBrightItsLightIs) {
   Look look;
   look.view_transform = kRawTransform;
   view_.relit.plane(0)[3] = std::numeric_limits<float>::infinity();
@@ -110,7 +116,7 @@ TEST_F(LookPicture, IsFiniteHoweverBrightItsLightIs) {
   }
 }
 
-TEST_F(LookPicture, IsOfAViewTransformThatIsDrawn) {
+TEST_F(LookPictures, IsOfAViewTransformThatIsDrawn) {
   Look look;
   look.view_transform = "aces";
   EXPECT_THROW(lookFileExtension(look), Error);
