@@ -90,15 +90,21 @@ class CpuSceneRenderer final : public SceneRenderer {
 
   void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
               const OnPicture& on_picture) override {
-    rasterize(camera, channels);
+    if (!instances_.empty()) rasterize(camera, channels);
     progress.check();
     RenderedPicture picture;
     picture.camera = camera;
     for (const ChannelInfo& channel : channels) {
-      picture.channels.push_back({channel.id, valuesOf(channel, progress), 0});
+      picture.channels.push_back(
+          {channel.id, instances_.empty() ? nothing(camera, channel) : valuesOf(channel, progress), 0});
       progress.check();
     }
     on_picture(std::move(picture));
+  }
+
+  // Of a scene of meshes alone.
+  static std::shared_ptr<const Planes> nothing(const Camera& camera, const ChannelInfo& channel) {
+    return std::make_shared<const Planes>(camera.width, camera.height, componentsOf(channel));
   }
 
   // Of the camera that was drawn last nothing is drawn again.

@@ -40,10 +40,11 @@ vec3 baseColor(const ShBlock& block, std::size_t i, vec3 direction) {
 
 GaussianSurfaces::GaussianSurfaces(const std::vector<RenderInstance>& instances, ComputeDevice& device)
     : materials_{{}, ShBlock(0, 3), ShBlock(0, 1)} {
+  const bool materials =
+      std::all_of(instances.begin(), instances.end(), [](const RenderInstance& i) { return !!i.materials; });
   for (const RenderInstance& i : instances) {
-    if (!i.materials) throw Error(Error::Kind::Bug, "paths among Gaussians without materials");
     append(cloud_, transformed(*i.cloud, i.world_from_cloud));
-    append(materials_, transformed(*i.materials, i.world_from_cloud));
+    if (materials) append(materials_, transformed(*i.materials, i.world_from_cloud));
   }
   for (const RenderInstance& i : instances) {
     const Attribute* side = attributeNamed(*i.attributes, kNormalSideName);
@@ -60,6 +61,7 @@ GaussianSurfaces::GaussianSurfaces(const std::vector<RenderInstance>& instances,
 
 PathHit GaussianSurfaces::hitOf(const SplatHit& hit, vec3 origin, vec3 direction) const {
   const std::size_t i = hit.splat;
+  if (materials_.roughness.empty()) throw Error(Error::Kind::Bug, "paths among Gaussians without materials");
   const mat3 axes = glm::mat3_cast(cloud_.rotation[i]);
   const vec3 scale = glm::max(cloud_.scale_m[i], vec3(1e-6f));
   const vec3 steep = axes * ((direction * axes) / (scale * scale));
@@ -70,8 +72,9 @@ PathHit GaussianSurfaces::hitOf(const SplatHit& hit, vec3 origin, vec3 direction
           .roughness = std::clamp(materials_.roughness[i], kLeastRoughness, 1.0f)};
 }
 
-std::optional<PathHit> GaussianSurfaces::nearest(vec3 origin, vec3 direction, std::uint64_t chance) const {
-  const std::optional<SplatHit> hit = tracer_->drawn({origin, direction}, chance, rules());
+std::optional<PathHit> GaussianSurfaces::nearest(vec3 origin, vec3 direction, std::uint64_t chance,
+                                                 float reach_m) const {
+  const std::optional<SplatHit> hit = tracer_->drawn({origin, direction}, chance, rules(reach_m));
   return hit ? std::optional<PathHit>(hitOf(*hit, origin, direction)) : std::nullopt;
 }
 
@@ -80,6 +83,10 @@ std::optional<GaussianSurfaces::FirstHit> GaussianSurfaces::first(vec3 eye, vec3
   const std::optional<SplatHit> hit = tracer_->drawn({eye, direction}, chance);
   if (!hit) return {};
   return FirstHit{hitOf(*hit, eye, direction), !rules().counts(hit->splat, direction)};
+}
+
+float GaussianSurfaces::alphaBefore(vec3 eye, vec3 direction, float distance_m) const {
+  return 1 - tracer_->transmittance({eye, direction}, {.reach_m = distance_m});
 }
 
 float GaussianSurfaces::transmittance(vec3 origin, vec3 direction, float distance_m) const {

@@ -71,7 +71,7 @@ vec3 PathIntegrator::drawnBySurface(const PathHit& h, vec3 n, vec3 wo, PathNumbe
 
 vec3 PathIntegrator::direct(const PathHit& h, vec3 n, vec3 wo, PathNumbers& numbers) const {
   vec3 sum(0);
-  const vec3 o = h.position_m + settings_.offset_m * n;
+  const vec3 o = nextFrom(h, n);
   const auto add = [&](const LightSample& s, vec3 wi, bool of_light) {
     const Scattered f = scatter(h, n, wi, wo);
     const float density = settings_.draws == LightDraws::Both ? s.pdf + f.pdf : of_light ? s.pdf : f.pdf;
@@ -93,7 +93,7 @@ vec3 PathIntegrator::direct(const PathHit& h, vec3 n, vec3 wo, PathNumbers& numb
 vec3 PathIntegrator::lampLight(const PathHit& h, vec3 n, vec3 wo, vec3 by_surface,
                                PathNumbers& numbers) const {
   vec3 sum(0);
-  const vec3 o = h.position_m + settings_.offset_m * n;
+  const vec3 o = nextFrom(h, n);
   const auto add = [&](const PathLamp& lamp, const LampSample& s, bool of_light) {
     const Scattered f = scatter(h, n, s.toward, wo);
     const bool both = settings_.draws == LightDraws::Both;
@@ -125,7 +125,7 @@ PathRadiance PathIntegrator::trace(PathHit h, vec3 wo, PathNumbers& numbers) con
   PathRadiance sum;
   vec3 throughput(1);
   for (int bounce = 0;; ++bounce) {
-    const vec3 n = glm::dot(h.normal, wo) < 0 ? -h.normal : h.normal;
+    const vec3 n = towards(wo, h.normal);
     sum.all += throughput * direct(h, n, wo, numbers);
     if (bounce == 0) sum.direct = sum.all;
     if (bounce == settings_.bounces) break;
@@ -139,8 +139,7 @@ PathRadiance PathIntegrator::trace(PathHit h, vec3 wo, PathNumbers& numbers) con
       if (!(numbers.next().x < goes_on)) break;
       throughput /= goes_on;
     }
-    const std::optional<PathHit> next =
-        surfaces_.nearest(h.position_m + settings_.offset_m * n, wi, numbers.bits());
+    const std::optional<PathHit> next = surfaces_.nearest(nextFrom(h, n), wi, numbers.bits());
     if (!next) break;
     h = *next;
     wo = -wi;

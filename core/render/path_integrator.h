@@ -30,7 +30,11 @@ struct PathHit {
   float distance_m = 0;  // along the ray
   vec3 base_color{0};    // linear, [0, 1]
   float roughness = 1;   // (0, 1]
+  // From its position to where the next rays of the path begin; 0: PathSettings::offset_m along the normal.
+  vec3 step_m{0};
 };
+// The side of a hit's normal that the eye sees.
+inline vec3 towards(vec3 to_eye, vec3 normal) { return glm::dot(normal, to_eye) < 0 ? -normal : normal; }
 
 class PathSurfaces {
  public:
@@ -135,6 +139,9 @@ class PathIntegrator {
     vec3 value{0};
     float pdf = 0;
   };
+  vec3 nextFrom(const PathHit& hit, vec3 normal) const {
+    return hit.position_m + (hit.step_m == vec3(0) ? settings_.offset_m * normal : hit.step_m);
+  }
   Scattered scatter(const PathHit& hit, vec3 normal, vec3 to_light, vec3 to_eye) const;
   vec3 drawnBySurface(const PathHit& hit, vec3 normal, vec3 to_eye, PathNumbers& numbers) const;
   vec3 direct(const PathHit& hit, vec3 normal, vec3 to_eye, PathNumbers& numbers) const;

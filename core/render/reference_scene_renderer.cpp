@@ -11,11 +11,9 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/image/filter.h"
-#include "core/math/brdf.h"
 #include "core/math/color.h"
 #include "core/render/cpu_scene_renderer.h"
-#include "core/render/gaussian_surfaces.h"
-#include "core/render/pixel_rays.h"
+#include "core/render/first_hits.h"
 #include "core/render/prepared_light.h"
 #include "core/scene/gbuffer.h"
 
@@ -23,16 +21,10 @@ namespace beam {
 namespace {
 
 constexpr std::size_t kRows = 2;       // of a tile
-constexpr float kLayer_m = 0.03f;      // from the blended surface; beyond it a Gaussian is of another one
 constexpr float kLeastAlbedo = 0.05f;  // of what a denoised signal is divided by
 constexpr int kLevels = 5;
-constexpr int kTries = 16;
 constexpr int kMostOfAPass = 16;  // paths a pixel between two pictures
 constexpr float kNoLimit = 1e30f;
-
-// What the rasteriser blends of a view: the first hits.
-constexpr std::array kGuides = {kAlphaChannel, kDepthChannel, kNormalChannel, kBaseColorChannel,
-                                kRoughnessChannel};
 
 using Values = std::shared_ptr<const Planes>;
 
@@ -40,15 +32,6 @@ vec3 triple(const Planes& p, std::size_t i) { return {p.plane(0)[i], p.plane(1)[
 void put(Planes& p, std::size_t i, vec3 v) {
   for (int c = 0; c < 3; ++c) p.plane(c)[i] = v[c];
 }
-
-struct FirstHits {
-  Camera camera;
-  Values alpha, depth, normal, base_color, roughness;
-
-  vec3 baseColor(std::size_t i) const {
-    return glm::clamp(triple(*base_color, i) / alpha->values[i], 0.0f, 1.0f);
-  }
-};
 
 // Sums of a pixel's paths; of those that ended in a surface.
 struct PixelSum {
@@ -67,15 +50,21 @@ float varianceOfMean(float sum, float squares, int count) {
   return std::max(0.0f, squares / n - mean * mean) / (n - 1);
 }
 
+// All that a picture is made of; `shown` has meshes in it where there are some.
+struct PathScene {
+  const FirstHits& first;
+  Guides shown;
+  const PathSurfaces& surfaces;
+  const PathLights& lights;
+};
+
 class PathPicture {
  public:
-  PathPicture(FirstHits first, const GaussianSurfaces& surfaces, const PathLights& lights,
-              const ReferenceOptions& options)
-      : first_(std::move(first)),
-        rays_(first_.camera),
-        surfaces_(surfaces),
+  PathPicture(PathScene scene, const ReferenceOptions& options)
+      : first_(scene.first),
+        shown_(std::move(scene.shown)),
         options_(options),
-        paths_(surfaces, lights,
+        paths_(scene.surfaces, scene.lights,
                {.bounces = options.bounces,
                 .offset_m = options.offset_m,
                 .brightest = kNoLimit,
@@ -83,17 +72,17 @@ class PathPicture {
                 .sure_bounces = 3,
                 .specular = options.specular,
                 .draws = options.draws}),
-        sums_(first_.alpha->values.size()) {}
+        sums_(shown_.alpha->values.size()) {}
 
   // Samples [from, to) of every pixel.
   void add(int from, int to, const Progress& progress) {
-    const int w = first_.camera.width;
-    parallelFor(static_cast<std::size_t>(first_.camera.height), kRows,
+    const int w = shown_.alpha->width;
+    parallelFor(static_cast<std::size_t>(shown_.alpha->height), kRows,
                 [&](std::size_t begin, std::size_t end) {
                   for (std::size_t y = begin; y < end; ++y) {
                     for (int x = 0; x < w; ++x) {
                       const std::size_t i = y * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
-                      if (first_.alpha->values[i] < kVisibleAlpha) continue;
+                      if (shown_.alpha->values[i] < kVisibleAlpha) continue;
                       if (progress.stopRequested()) return;
                       addPixel(x, static_cast<int>(y), i, from, to);
                     }
@@ -107,15 +96,15 @@ class PathPicture {
     Planes direct, indirect, variance;
   };
   Parts parts() const {
-    const int w = first_.camera.width, h = first_.camera.height;
+    const int w = shown_.alpha->width, h = shown_.alpha->height;
     Parts p{Planes(w, h, 3), Planes(w, h, 3), Planes(w, h, 1)};
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const PixelSum& s = sums_[i];
       if (s.hits == 0) continue;
-      const float share = first_.alpha->values[i] / static_cast<float>(s.hits);
+      const float share = shown_.alpha->values[i] / static_cast<float>(s.hits);
       put(p.direct, i, share * s.direct);
       put(p.indirect, i, share * s.indirect);
-      const float alpha = first_.alpha->values[i];
+      const float alpha = shown_.alpha->values[i];
       p.variance.values[i] = alpha * alpha * varianceOfMean(s.luminance, s.luminance2, s.hits);
     }
     return p;
@@ -124,7 +113,7 @@ class PathPicture {
   // What is smooth is filtered, the texture of the base colour is not.
   Parts denoised(const Progress& progress) const {
     Parts p = parts();
-    const int w = first_.camera.width, h = first_.camera.height;
+    const int w = shown_.alpha->width, h = shown_.alpha->height;
     DenoiseGuides guides{Image<vec3>(w, h), Image<float>(w, h), Image<std::uint8_t>(w, h)};
     std::array<NoisySignal, 2> signals{NoisySignal{Planes(w, h, 3), Planes(w, h, 1)},
                                        NoisySignal{Planes(w, h, 3), Planes(w, h, 1)}};
@@ -133,7 +122,7 @@ class PathPicture {
       guides.valid.pixels[i] = s.hits > 0;
       if (!guides.valid.pixels[i]) continue;
       guides.depth_m.pixels[i] = s.depth_m / static_cast<float>(s.hits);
-      guides.normal.pixels[i] = triple(*first_.normal, i);
+      guides.normal.pixels[i] = triple(*shown_.normal, i);
       const vec3 albedo = albedoOf(i);
       const auto n = static_cast<float>(s.hits);
       put(signals[0].values, i, s.direct / (n * albedo));
@@ -144,7 +133,7 @@ class PathPicture {
     denoiseATrous(signals, guides, kLevels, progress);
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       if (!guides.valid.pixels[i]) continue;
-      const vec3 albedo = first_.alpha->values[i] * albedoOf(i);
+      const vec3 albedo = shown_.alpha->values[i] * albedoOf(i);
       put(p.direct, i, albedo * triple(signals[0].values, i));
       put(p.indirect, i, albedo * triple(signals[1].values, i));
     }
@@ -152,46 +141,21 @@ class PathPicture {
   }
 
  private:
-  vec3 albedoOf(std::size_t i) const { return glm::max(first_.baseColor(i), vec3(kLeastAlbedo)); }
-
-  // What the eye sees of the Gaussian that its ray ends in: the blended surface, or another one behind it.
-  PathHit seen(const GaussianSurfaces::FirstHit& first, std::size_t i, vec3 through, float length) const {
-    PathHit hit = first.hit;
-    const float z_m = first_.depth->values[i];
-    if (z_m > 0) {
-      const bool other = std::abs(hit.distance_m - z_m * length) > kLayer_m;
-      if (other && !first.from_behind) return hit;
-      hit.position_m = vec3(rays_.eye()) + z_m * through;
-    }
-    hit.normal = triple(*first_.normal, i);
-    hit.base_color = first_.baseColor(i);
-    hit.roughness = std::clamp(first_.roughness->values[i] / first_.alpha->values[i], kLeastRoughness, 1.0f);
-    return hit;
-  }
-
-  // A ray through the fringe of a surface mostly ends nowhere; alpha has that already.
-  std::optional<GaussianSurfaces::FirstHit> firstOf(vec3 direction, PathNumbers& numbers) const {
-    for (int i = 0; i < kTries; ++i) {
-      if (auto first = surfaces_.first(vec3(rays_.eye()), direction, numbers.bits())) return first;
-    }
-    return {};
-  }
+  vec3 albedoOf(std::size_t i) const { return glm::max(shown_.baseColor(i), vec3(kLeastAlbedo)); }
 
   void addPixel(int x, int y, std::size_t i, int from, int to) {
-    const vec3 through(rays_.worldThrough(x, y));
-    const float length = glm::length(through);
-    const vec3 direction = through / length, albedo = albedoOf(i);
+    const vec3 albedo = albedoOf(i);
     PixelSum& sum = sums_[i];
     for (int sample = from; sample < to; ++sample) {
       PathNumbers numbers(options_.seed, i, sample, options_.samples, Strata::Permuted);
-      const std::optional<GaussianSurfaces::FirstHit> first = firstOf(direction, numbers);
+      const std::optional<FirstHit> first = first_.draw(x, y, numbers);
       if (!first) continue;
-      const PathRadiance l = paths_.trace(seen(*first, i, through, length), -direction, numbers);
+      const PathRadiance l = paths_.trace(first->hit, first->to_eye, numbers);
       if (!std::isfinite(l.all.x + l.all.y + l.all.z)) continue;
       const vec3 indirect = l.all - l.direct;
       const float a = luminance(l.direct / albedo), b = luminance(indirect / albedo), c = luminance(l.all);
       ++sum.hits;
-      sum.depth_m += first->hit.distance_m / length;
+      sum.depth_m += first->depth_m;
       sum.direct += l.direct;
       sum.indirect += indirect;
       sum.of_direct += a, sum.of_direct2 += a * a;
@@ -200,9 +164,8 @@ class PathPicture {
     }
   }
 
-  FirstHits first_;
-  PixelRays rays_;
-  const GaussianSurfaces& surfaces_;
+  const FirstHits& first_;
+  Guides shown_;
   const ReferenceOptions& options_;
   PathIntegrator paths_;
   std::vector<PixelSum> sums_;
@@ -234,6 +197,7 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     abilities_.occlusion = false;
     abilities_.without_visibility = "surfaces shadow themselves, for their outer sides are unknown";
     abilities_.refines = true;
+    abilities_.meshes = abilities_.ground = true;
   }
 
   const RendererAbilities& abilities() const override { return abilities_; }
@@ -246,6 +210,8 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     unlit_->load(dark, progress);
     if (!surfaces_ || scene.instances != instances_) surfaces_ = nullptr;
     instances_ = scene.instances;
+    loadMeshes(scene);
+    progress.check();
     const EnvironmentLight& light = scene.lighting.environment;
     lamps_.clear();
     for (const Light& lamp : scene.lighting.lights)
@@ -257,6 +223,14 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     light_ = light;
   }
 
+  void loadMeshes(const RenderScene& scene) {
+    if (scene.meshes == mesh_list_ && scene.ground == ground_ && !!meshes_ == hasMeshes(scene)) return;
+    meshes_ = nullptr;
+    if (hasMeshes(scene)) meshes_ = std::make_unique<MeshSurfaces>(scene.meshes, scene.ground);
+    mesh_list_ = scene.meshes;
+    ground_ = scene.ground;
+  }
+
   void doDraw(const Camera& camera, std::span<const ChannelInfo> channels, Progress& progress,
               const OnPicture& on_picture) override {
     std::vector<ChannelInfo> drawn;
@@ -265,9 +239,14 @@ class ReferenceSceneRenderer final : public SceneRenderer {
                  [](const ChannelInfo& c) { return !isLit(c); });
     if (lit) {
       for (const char* id : kGuides) drawn.push_back(channelOf(id));
+    } else if (meshes_) {
+      drawn.push_back(channelOf(kAlphaChannel));
     }
-    RenderedPicture first;
-    unlit_->draw(camera, drawn, progress, [&](RenderedPicture p) { first = std::move(p); });
+    RenderedPicture rastered;
+    unlit_->draw(camera, drawn, progress, [&](RenderedPicture p) { rastered = std::move(p); });
+    if (lit || meshes_) prepareSurfaces(progress);
+    const RenderedPicture shown =
+        meshes_ ? withMeshes(rastered, surfaces_.get(), *meshes_, progress) : rastered;
     const auto give = [&](const PathPicture::Parts* parts, int samples, bool final) {
       RenderedPicture picture;
       picture.camera = camera;
@@ -275,16 +254,23 @@ class ReferenceSceneRenderer final : public SceneRenderer {
       picture.final = final;
       for (const ChannelInfo& c : channels)
         picture.channels.push_back(
-            {c.id, isLit(c) ? valuesOf(c, *parts) : channelIn(first, c.id)->values, 0});
+            {c.id, isLit(c) ? valuesOf(c, *parts) : channelIn(shown, c.id)->values, 0});
       on_picture(std::move(picture));
     };
     if (!lit) return give(nullptr, 1, true);
-    prepare(progress);
-    const auto values = [&](const char* id) { return channelIn(first, id)->values; };
+    prepareLight(progress);
+    std::optional<SceneSurfaces> all;
+    if (meshes_) all.emplace(surfaces_.get(), *meshes_, options_.offset_m);
+    const FirstHits first(camera, rastered, {surfaces_.get(), meshes_.get(), all ? &*all : nullptr});
     const PanoramaLights lights(sampler_.get(), lamps_);
-    PathPicture picture({camera, values(kAlphaChannel), values(kDepthChannel), values(kNormalChannel),
-                         values(kBaseColorChannel), values(kRoughnessChannel)},
-                        *surfaces_, lights, options_);
+    const PathSurfaces& surfaces = all ? static_cast<const PathSurfaces&>(*all) : *surfaces_;
+    follow({first, Guides(shown), surfaces, lights}, progress, give);
+  }
+
+  // Gives picture after picture, each of more paths.
+  template <class Give>
+  void follow(PathScene scene, Progress& progress, Give&& give) {
+    PathPicture picture(std::move(scene), options_);
     progress.expect(options_.samples, "paths a pixel");
     for (int done = 0; done < options_.samples;) {
       const int next = std::min({options_.samples, std::max(1, 2 * done), done + kMostOfAPass});
@@ -298,10 +284,13 @@ class ReferenceSceneRenderer final : public SceneRenderer {
     }
   }
 
-  // What light needs; only once there is some to follow.
-  void prepare(const Progress& progress) {
-    if (!surfaces_) surfaces_ = std::make_unique<GaussianSurfaces>(instances_, *device_);
+  // What rays need; only once there are some to follow.
+  void prepareSurfaces(const Progress& progress) {
+    if (!surfaces_ && !instances_.empty())
+      surfaces_ = std::make_unique<GaussianSurfaces>(instances_, *device_);
     progress.check();
+  }
+  void prepareLight(const Progress& progress) {
     if (sampler_ || !panorama_) return;
     sampler_ = std::make_unique<EnvironmentSampler>(lightingEnvironment(*panorama_, progress), yawOf(light_),
                                                     static_cast<float>(light_.gain));
@@ -313,7 +302,10 @@ class ReferenceSceneRenderer final : public SceneRenderer {
   std::unique_ptr<SceneRenderer> unlit_;
   RendererAbilities abilities_;
   std::vector<RenderInstance> instances_;
-  std::unique_ptr<GaussianSurfaces> surfaces_;  // of instances_; null: not needed yet
+  std::unique_ptr<GaussianSurfaces> surfaces_;  // of instances_; null: not needed yet, or there are none
+  std::vector<RenderMesh> mesh_list_;
+  Ground ground_;
+  std::unique_ptr<MeshSurfaces> meshes_;  // of mesh_list_ and ground_; null: neither is there
   std::vector<PathLamp> lamps_;
   std::shared_ptr<const Environment> panorama_;  // of the last scene; null: it has none, or it is dark
   EnvironmentLight light_;

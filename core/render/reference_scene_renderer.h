@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference: light followed path by path through the Gaussians (methods 7.5), which real-time shading is
-// judged by. A ray ends in a Gaussian drawn by its blend weight; of what the camera sees, normal and material
-// are the blended ones. Light from the panorama by next-event estimation with multiple importance sampling,
-// bounces by cosine and visible normals, no baked occlusion. Progressive; the same picture for any number of
-// threads and any instruction set.
+// The reference: light followed path by path among Gaussians, meshes and the ground (methods 7.5), which
+// real-time shading is judged by. A ray ends in a Gaussian drawn by its blend weight, or in a mesh; of what
+// the camera sees of Gaussians, normal and material are the blended ones, and meshes have smooth edges
+// (first_hits.h). Light from the panorama by next-event estimation with multiple importance sampling, bounces
+// by cosine and visible normals, no baked occlusion. Progressive; the same picture for any number of threads
+// and any instruction set.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +17,12 @@
 namespace beam {
 
 struct ReferenceOptions {
-  int samples = 128;       // paths a pixel
-  int bounces = 2;         // of a path, after the first hit
-  bool denoise = true;     // by the house's filter (image/filter.h), guided by the first hit
-  float offset_m = 0.02f;  // of a path's next ray along the normal, as of occlusion (methods A-23)
+  int samples = 128;    // paths a pixel
+  int bounces = 2;      // of a path, after the first hit
+  bool denoise = true;  // by the house's filter (image/filter.h), guided by the first hit
+  // Of a path's next ray along the normal of Gaussians, as of occlusion (methods A-23); never through a mesh.
+  // From meshes rays go on where they are.
+  float offset_m = 0.02f;
   std::uint64_t seed = 1;
   // --- What tests take apart ---
   bool specular = true;
@@ -29,7 +32,7 @@ struct ReferenceOptions {
 inline constexpr int kMostSamples = 65536;
 
 // Draws relight and its parts, and what the CPU renderer draws without light. Throws Error{Usage} for options
-// out of range.
+// out of range; its load() Error{Data} for a mesh that is broken.
 std::unique_ptr<SceneRenderer> newReferenceSceneRenderer(std::shared_ptr<ComputeDevice> device,
                                                          const ReferenceOptions& options);
 

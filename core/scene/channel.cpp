@@ -98,11 +98,9 @@ std::vector<ChannelInfo> table() {
   };
 }
 
-// Nothing has nothing.
 template <class Has>
 bool allOf(const RenderScene& scene, Has&& has) {
-  const auto& instances = scene.instances;
-  return !instances.empty() && std::all_of(instances.begin(), instances.end(), has);
+  return std::all_of(scene.instances.begin(), scene.instances.end(), has);
 }
 
 bool hasAttribute(const RenderInstance& instance, const std::string& name) {
@@ -173,12 +171,15 @@ std::vector<std::string> layerNames(const ChannelInfo& channel, std::string_view
   return names;
 }
 
+// Nothing has nothing; meshes and the ground have materials.
 Lack lackOf(const ChannelInfo& channel, const RenderScene& scene) {
+  const bool gaussians = !scene.instances.empty();
   if (needsMaterials(channel)) {
-    if (!allOf(scene, [](const RenderInstance& i) { return i.materials != nullptr; })) return Lack::Materials;
+    const auto has = [](const RenderInstance& i) { return i.materials != nullptr; };
+    if (!(gaussians || hasMeshes(scene)) || !allOf(scene, has)) return Lack::Materials;
   } else if (!channel.attribute.empty()) {
     const auto has = [&](const RenderInstance& i) { return hasAttribute(i, channel.attribute); };
-    if (!allOf(scene, has)) return Lack::Attribute;
+    if (!gaussians || !allOf(scene, has)) return Lack::Attribute;
   }
   return channel.needs == ChannelNeeds::MaterialsAndLight && !isLit(scene) ? Lack::Light : Lack::None;
 }

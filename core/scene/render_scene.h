@@ -66,6 +66,8 @@ struct RenderScene {
 
 // Whether a panorama or a light that this version knows shines in it.
 bool isLit(const RenderScene& scene);
+// Whether there are meshes or the ground.
+inline bool hasMeshes(const RenderScene& scene) { return !scene.meshes.empty() || scene.ground.enabled; }
 
 struct OpenedMesh {
   std::shared_ptr<const Mesh> mesh;

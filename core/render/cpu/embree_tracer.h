@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Visibility through Embree user geometry, one box a Gaussian: the oracle of all tracers, too slow for a
-// whole dome. The only file of the engine that knows Embree.
+// whole dome. Beside it triangle_tracer.h alone knows Embree.
 #pragma once
 
 #include <memory>

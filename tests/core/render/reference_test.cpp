@@ -13,6 +13,7 @@
 #include "hwy/highway.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/message_of.h"
+#include "tests/support/reference_scene.h"
 #include "tests/support/sphere_capture.h"
 #include "tests/support/splat_shapes.h"
 
@@ -22,25 +23,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr float kOffset_m = 0.01f;
-
-void setMaterials(RenderInstance& instance, vec3 base_color, float roughness) {
-  const std::size_t n = instance.cloud->size();
-  auto materials = std::make_shared<Materials>();
-  materials->roughness.assign(n, roughness);
-  materials->base_color = ShBlock(n, 3);
-  materials->ambient_occlusion = ShBlock(n, 1);
-  for (std::size_t i = 0; i < n; ++i)
-    for (int c = 0; c < 3; ++c) materials->base_color.of(i)[c] = (base_color[c] - 0.5f) / kShC0;
-  instance.materials = materials;
-}
-
-RenderInstance instanceOf(GaussianCloud cloud, vec3 base_color, float roughness) {
-  RenderInstance instance;
-  instance.cloud = std::make_shared<const GaussianCloud>(std::move(cloud));
-  instance.attributes = std::make_shared<const std::vector<Attribute>>();
-  setMaterials(instance, base_color, roughness);
-  return instance;
-}
 
 // Three staggered layers: a ray gets through none of them.
 GaussianCloud sheet() {
@@ -53,13 +35,9 @@ GaussianCloud sheet() {
   return cloud;
 }
 
-std::shared_ptr<const Environment> uniform() {
-  return std::make_shared<const Environment>(makeEnvironment(Image<vec3>(32, 16, vec3(1))));
-}
-
 RenderScene sheetIn(std::shared_ptr<const Environment> light, vec3 base_color, float roughness) {
   RenderScene scene;
-  scene.instances = {beam::testing::instanceOf(sheet(), base_color, roughness)};
+  scene.instances = {gaussiansOf(sheet(), base_color, roughness)};
   scene.environment = std::move(light);
   return scene;
 }
@@ -88,14 +66,6 @@ Drawn drawn(const RenderScene& scene, const Camera& camera, const ReferenceOptio
     out.variance = *channelIn(p, kVarianceChannel)->values;
   });
   return out;
-}
-
-vec3 meanOf(const Planes& p) {
-  dvec3 sum(0);
-  const std::size_t n = p.values.size() / 3;
-  for (std::size_t i = 0; i < n; ++i)
-    for (int c = 0; c < 3; ++c) sum[c] += p.plane(c)[i];
-  return vec3(sum / static_cast<double>(n));
 }
 
 // rho L_D + L_S of methods 11.1, seen face on.
@@ -155,7 +125,7 @@ RenderScene ballOnSheet(bool mirrored = false) {
       sheetIn(std::make_shared<const Environment>(makeEnvironment(std::move(map))), vec3(0.6f), 0.6f);
   GaussianCloud ball;
   addSphere(ball, vec3(0.05f, 0.2f, 0), 0.18f, 900);
-  scene.instances.push_back(beam::testing::instanceOf(std::move(ball), vec3(0.7f, 0.3f, 0.2f), 0.4f));
+  scene.instances.push_back(gaussiansOf(std::move(ball), vec3(0.7f, 0.3f, 0.2f), 0.4f));
   return scene;
 }
 
@@ -223,7 +193,7 @@ TEST(Reference, OfAConvexBodyIsWhatShadingGivesInRealTime) {
   GaussianCloud cloud;
   addSphere(cloud, vec3(0), 0.4f, 3000);
   RenderScene scene;
-  scene.instances = {beam::testing::instanceOf(std::move(cloud), vec3(0.5f, 0.4f, 0.3f), 0.8f)};
+  scene.instances = {gaussiansOf(std::move(cloud), vec3(0.5f, 0.4f, 0.3f), 0.8f)};
   scene.environment = ballOnSheet().environment;
   scene.lighting.environment.shadows = kOcclusionAlone;
   const Camera camera = cameraLookingAt({0, 0.5, 2}, {0, 0, 0}, 48, 80);

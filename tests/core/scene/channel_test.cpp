@@ -54,6 +54,18 @@ TEST(Channels, SayWhatASceneLacks) {
   EXPECT_EQ(lackOf(channelOf("relight"), scene), Lack::Light);
 }
 
+TEST(Channels, MeshesAndTheGroundHaveMaterialsAndNoAttributes) {
+  ChannelInfo speed;
+  speed.attribute = "speed";
+  RenderScene scene;
+  scene.ground.enabled = true;
+  EXPECT_EQ(lackOf(channelOf("base_color"), scene), Lack::None);
+  EXPECT_EQ(lackOf(channelOf("relight"), scene), Lack::Light);
+  EXPECT_EQ(lackOf(speed, scene), Lack::Attribute);
+  scene.instances = {something()};
+  EXPECT_EQ(lackOf(channelOf("base_color"), scene), Lack::Materials) << "of the Gaussians beside it";
+}
+
 TEST(Channels, AnAttributeIsThereWhenAllInstancesHaveIt) {
   ChannelInfo speed;
   speed.attribute = "speed";
