@@ -58,15 +58,14 @@ struct TriangleTracer::State {
 
   // One thread and a fixed instruction set: the same tree, and of two triangles that a ray meets in one
   // place the same one, on every machine.
-  State() {
+  explicit State(TriangleEdges edges) {
     device.reset(rtcNewDevice("threads=1,isa=avx2"));
     if (!device)
       throw Error(Error::Kind::Bug,
                   fmt::format("Embree did not start: code {}", static_cast<int>(rtcGetDeviceError(nullptr))));
     rtcSetDeviceMemoryMonitorFunction(device.get(), &State::countMemory, this);
     scene.reset(rtcNewScene(device.get()));
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // nothing slips through an edge
-    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    if (edges == TriangleEdges::Closed) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   }
 
   void add(const Mesh& mesh, unsigned place) {
@@ -76,7 +75,7 @@ struct TriangleTracer::State {
     auto* t = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
                                                              RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
     if (v && t) {
-      for (const vec3& x : mesh.vertices) v = std::copy_n(&x[0], 3, v);
+      put(mesh.vertices, v);
       for (const auto& corners : mesh.triangles) t = std::copy_n(corners.data(), 3, t);
       rtcCommitGeometry(geometry);
       rtcAttachGeometryByID(scene.get(), geometry, place);
@@ -85,15 +84,22 @@ struct TriangleTracer::State {
     requireNoError();
   }
 
+  static void put(std::span<const vec3> vertices, float* to) {
+    for (const vec3& x : vertices) to = std::copy_n(&x[0], 3, to);
+  }
+
   void requireNoError() const {
     const RTCError code = rtcGetDeviceError(device.get());
     if (code == RTC_ERROR_NONE) return;
-    throw Error(code == RTC_ERROR_OUT_OF_MEMORY ? Error::Kind::OutOfMemory : Error::Kind::Bug,
+    if (code == RTC_ERROR_OUT_OF_MEMORY)
+      throw Error(Error::Kind::OutOfMemory, "out of memory for rays among meshes; close other programs");
+    throw Error(Error::Kind::Bug,
                 fmt::format("Embree could not build over the meshes: code {}", static_cast<int>(code)));
   }
 };
 
-TriangleTracer::TriangleTracer(std::span<const Mesh> meshes) : state_(std::make_unique<State>()) {
+TriangleTracer::TriangleTracer(std::span<const Mesh> meshes, TriangleEdges edges)
+    : state_(std::make_unique<State>(edges)) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     requireTriangles(meshes[i], i);
     if (!meshes[i].triangles.empty()) state_->add(meshes[i], static_cast<unsigned>(i));
@@ -104,6 +110,16 @@ TriangleTracer::TriangleTracer(std::span<const Mesh> meshes) : state_(std::make_
 TriangleTracer::~TriangleTracer() = default;
 TriangleTracer::TriangleTracer(TriangleTracer&&) noexcept = default;
 TriangleTracer& TriangleTracer::operator=(TriangleTracer&&) noexcept = default;
+
+void TriangleTracer::move(std::uint32_t mesh, std::span<const vec3> vertices) {
+  const RTCGeometry geometry = rtcGetGeometry(state_->scene.get(), mesh);
+  if (!geometry) return;  // no triangles
+  State::put(vertices, static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)));
+  rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  rtcCommitGeometry(geometry);
+  rtcCommitScene(state_->scene.get());
+  state_->requireNoError();
+}
 
 // Embree 4 has no context: these two calls lose theirs.
 std::optional<TriangleHit> TriangleTracer::nearest(vec3 o, vec3 d, float reach_m) const {

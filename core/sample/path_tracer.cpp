@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sample/path_tracer.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/render/path_integrator.h"
+#include "core/render/triangle_tracer.h"
 #include "core/sample/look.h"
 
 namespace beam {
@@ -20,16 +17,13 @@ constexpr double kNear_m = 0.05;
 
 }  // namespace
 
-// Embree's triangles with the looks of the figure.
+// Triangles with the looks of the figure.
 struct SampleScene::State final : PathSurfaces {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  RTCGeometry geometry = nullptr;
   const Figure& figure;
   mat3 world_from_capture;
-  std::vector<vec3> first;              // in the figure's pose, capture axes
-  std::vector<vec3> vertices, normals;  // as posed, world
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<vec3> first;  // in the figure's pose, capture axes
+  Mesh posed;               // world
+  TriangleTracer tracer;
   std::vector<std::uint32_t> part_start;  // the figure's parts near each triangle
   std::vector<std::uint8_t> parts;
 
@@ -37,49 +31,26 @@ struct SampleScene::State final : PathSurfaces {
       : figure(f),
         world_from_capture(turn),
         first(surface.vertices),
-        vertices(first.size()),
-        normals(first.size()),
-        triangles(surface.triangles) {
+        posed(turned(surface)),
+        tracer({&posed, 1}, TriangleEdges::Rounded) {
     findParts();
-    device = rtcNewDevice("threads=1,isa=avx2");
-    if (!device) throw Error(Error::Kind::Bug, "Embree did not start");
-    scene = rtcNewScene(device);
-    geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, vertices.size()));
-    auto* t = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
-    if (!v || !t)
-      throw Error(Error::Kind::OutOfMemory,
-                  "out of memory while the sample is made; close other programs, or make it with fewer "
-                  "--cameras or a smaller --size");
-    for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].data(), 3, t + 3 * i);
-    rtcAttachGeometry(scene, geometry);
-    pose(surface);
   }
-  ~State() override {
-    rtcReleaseGeometry(geometry);
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
+
+  Mesh turned(const Mesh& surface) const {
+    Mesh mesh = surface;
+    for (vec3& v : mesh.vertices) v = world_from_capture * v;
+    for (vec3& n : mesh.normals) n = world_from_capture * n;
+    return mesh;
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
 
   void pose(const Mesh& surface) {
-    auto* v = static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      vertices[i] = world_from_capture * surface.vertices[i];
-      normals[i] = world_from_capture * surface.normals[i];
-      v[3 * i] = vertices[i].x, v[3 * i + 1] = vertices[i].y, v[3 * i + 2] = vertices[i].z;
-    }
-    rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
-    rtcCommitGeometry(geometry);
-    rtcCommitScene(scene);
+    posed = turned(surface);
+    tracer.move(0, posed.vertices);
   }
 
   void findParts() {
     part_start.assign(1, 0);
-    for (const auto& t : triangles) {
+    for (const auto& t : posed.triangles) {
       const vec3 a = first[t[0]];
       const float size = std::max(glm::length(first[t[1]] - a), glm::length(first[t[2]] - a));
       const std::vector<std::uint8_t> near = figure.partsNear(a, size);
@@ -90,46 +61,29 @@ struct SampleScene::State final : PathSurfaces {
 
   // The look belongs to the body: of the same point in the figure's pose.
   FigureLook lookAt(unsigned triangle, float u, float v) const {
-    const auto& t = triangles[triangle];
+    const auto& t = posed.triangles[triangle];
     const vec3 x = (1 - u - v) * first[t[0]] + u * first[t[1]] + v * first[t[2]];
     return lookOf(
         figure.pointAt(x, {parts.data() + part_start[triangle], parts.data() + part_start[triangle + 1]}));
   }
 
-  static RTCRay rayOf3(vec3 o, vec3 d) {
-    RTCRay r{};
-    r.org_x = o.x, r.org_y = o.y, r.org_z = o.z, r.dir_x = d.x, r.dir_y = d.y, r.dir_z = d.z;
-    r.tfar = std::numeric_limits<float>::infinity();
-    r.mask = 0xffffffffu;
-    return r;
-  }
-
   std::optional<PathHit> nearest(vec3 o, vec3 d, std::uint64_t = 0) const override {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit rh{};
-    rh.ray = rayOf3(o, d);
-    rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context, &rh);
-    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const auto& t = triangles[rh.hit.primID];
-    const float u = rh.hit.u, v = rh.hit.v;
-    const FigureLook look = lookAt(rh.hit.primID, u, v);
+    const std::optional<TriangleHit> hit = tracer.nearest(o, d, kFar_m);
+    if (!hit) return {};
+    const auto& t = posed.triangles[hit->triangle];
+    const float u = hit->weights.x, v = hit->weights.y;
+    const FigureLook look = lookAt(hit->triangle, u, v);
+    const std::vector<vec3>& normals = posed.normals;
     return PathHit{
-        .position_m = o + rh.ray.tfar * d,
+        .position_m = o + hit->distance_m * d,
         .normal = glm::normalize((1 - u - v) * normals[t[0]] + u * normals[t[1]] + v * normals[t[2]]),
-        .distance_m = rh.ray.tfar,
+        .distance_m = hit->distance_m,
         .base_color = look.base_color,
         .roughness = look.roughness};
   }
 
   float transmittance(vec3 o, vec3 d, float distance_m) const override {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRay r = rayOf3(o, d);
-    r.tfar = std::min(r.tfar, distance_m);
-    rtcOccluded1(scene, &context, &r);
-    return r.tfar < 0 ? 0.0f : 1.0f;
+    return tracer.occluded(o, d, distance_m) ? 0.0f : 1.0f;
   }
 
   struct CameraRays {
@@ -148,14 +102,14 @@ struct SampleScene::State final : PathSurfaces {
   // 1 where a triangle may be seen: pixels of its projected bounding box and one around.
   Image<std::uint8_t> mayCover(const Camera& camera) const {
     Image<std::uint8_t> out(camera.width, camera.height);
-    std::vector<vec2> at(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const dvec3 x = camera.camera_from_world * dvec3(vertices[i]);
+    std::vector<vec2> at(posed.vertices.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const dvec3 x = camera.camera_from_world * dvec3(posed.vertices[i]);
       if (x.z < kNear_m) return Image<std::uint8_t>(camera.width, camera.height, 1);
       at[i] = vec2(project(camera.intrinsics, x));
     }
     const vec2 last(camera.width - 1, camera.height - 1);
-    for (const auto& t : triangles) {
+    for (const auto& t : posed.triangles) {
       const vec2 low = glm::floor(glm::min(at[t[0]], glm::min(at[t[1]], at[t[2]]))) - 1.0f,
                  high = glm::floor(glm::max(at[t[0]], glm::max(at[t[1]], at[t[2]]))) + 1.0f;
       const ivec2 a(glm::clamp(low, vec2(0), last)), b(glm::clamp(high, vec2(0), last));

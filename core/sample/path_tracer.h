@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample's pictures by path tracing: one posed figure with its procedural looks under a panorama, Embree
-// underneath, core/render/path_integrator.h above. Works in the house's world axes.
+// The sample's pictures by path tracing: one posed figure with its procedural looks under a panorama, over
+// core/render/triangle_tracer.h and path_integrator.h. Works in the house's world axes.
 #pragma once
 
 #include <memory>

@@ -52,6 +52,14 @@ TEST(TriangleTracer, OfNothingMeetsNothing) {
   EXPECT_FALSE(TriangleTracer({&empty, 1}).occluded(vec3(0), kDown, kFar));
 }
 
+TEST(TriangleTracer, MeetsAMovedMeshWhereItIs) {
+  const std::vector<Mesh> meshes = {level(0), level(1)};
+  TriangleTracer tracer(meshes);
+  tracer.move(1, level(2, 0.5f).vertices);
+  EXPECT_FLOAT_EQ(tracer.nearest(vec3(0.2f, 3, 0.1f), kDown, kFar)->distance_m, 1);
+  EXPECT_FLOAT_EQ(tracer.nearest(vec3(0.8f, 3, 0.1f), kDown, kFar)->distance_m, 3);
+}
+
 TEST(TriangleTracer, RefusesBrokenTriangles) {
   std::vector<Mesh> meshes = {level(0), level(1)};
   meshes[1].triangles[1][2] = 4;
