@@ -148,8 +148,6 @@ TEST(MeshReference, AWallOfGaussiansIsAsBrightAsTheSameWallOfTriangles) {
           *channelIn(pictureOf(scene, camera, {kRelightChannel}, options), kRelightChannel)->values);
     };
     const vec3 a = mean(gaussians), b = mean(triangles);
-    std::printf("wall, %s: %.5f %.5f %.5f of Gaussians, %.5f %.5f %.5f of triangles\n",
-                panorama ? "panorama" : "lamp", a.x, a.y, a.z, b.x, b.y, b.z);
     ASSERT_GT(b.z, 0.05f);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c] / b[c], 1, 0.01) << panorama;
   }
@@ -377,6 +375,21 @@ TEST(MeshReference, SeenFromWhereMeshesAreAwayTheyChangeNothing) {
   const RenderedPicture with = pictureOf(scene, camera, kUnlit, {});
   for (std::size_t c = 0; c < kUnlit.size(); ++c)
     EXPECT_EQ(with.channels[c].values->values, without.channels[c].values->values) << kUnlit[c];
+}
+
+TEST(MeshReference, BesideGaussiansWithoutMaterialsWhatNeedsNoneIsDrawn) {
+  RenderScene scene;
+  scene.instances = {gaussiansOf(sheet(0), vec3(0.5f), 0.5f)};
+  scene.instances[0].materials = nullptr;
+  scene.meshes = {meshOf(icosphere(vec3(0, 0.3f, 0), 0.2f, 2), vec3(0.5f))};
+  const Camera camera = cameraLookingAt({0, 2, 0.001}, {0, 0, 0}, 24, 30);
+  const RenderedPicture p =
+      pictureOf(scene, camera, {kRgbChannel, kAlphaChannel, kDepthChannel, kNormalChannel}, {});
+  const std::size_t middle = 12 * 24 + 12, beside = 12 * 24 + 7;
+  EXPECT_NEAR(pixelOf(p, kRgbChannel, middle).x, srgbFromLinear(0.5f), 1e-5f);
+  EXPECT_NEAR(pixelOf(p, kDepthChannel, middle).x, 1.5f, 1e-2f);
+  EXPECT_NEAR(pixelOf(p, kDepthChannel, beside).x, 2, 5e-3f);
+  EXPECT_NEAR(pixelOf(p, kAlphaChannel, beside).x, 1, 1e-2f);
 }
 
 TEST(MeshReference, ItsLoadFollowsChangesAndRefusesBrokenMeshes) {
