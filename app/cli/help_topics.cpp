@@ -13,6 +13,7 @@
 #include "core/scene/camera_track.h"
 #include "core/scene/channel.h"
 #include "core/scene/look.h"
+#include "core/scene/scene_document.h"
 #include "core/work/export_frames.h"
 
 namespace beam {
@@ -287,6 +288,13 @@ std::string looksText() {
       "{\"gain\": 0.3}, \"lights\": [{\"id\": \"sun\", \"kind\": \"directional\", \"azimuth_deg\": 60, "
       "\"elevation_deg\": 40}]}",
       2);
+  page.paragraph(
+      "A dot in a name stands for an object inside: {\"environment\": {\"file\": {\"relative\": "
+      "\"sunset.exr\"}}}. Files are named relative to the look's own file, or absolutely: one of the two is "
+      "enough. What is misspelt is kept, has no effect and is warned of. Directions are those of the world: "
+      "azimuth 0 is +Z, 90 is +X; beam help environment has the axes. The transforms aces and agx are kept "
+      "and not drawn.",
+      2);
   page.heading("Of the look");
   fieldRows(fieldsOf(Look{}), page);
   for (const std::string& kind : lightKinds()) {
@@ -298,7 +306,10 @@ std::string looksText() {
       "\"curves\" drives numbers and switches by their paths, lights.sun.intensity or "
       "environment.rotation_deg: {\"keys\": [{\"time_s\": 0, \"value\": 0}, {\"time_s\": 2, \"value\": "
       "90}]}. "
-      "A frame has the time of its place in the capture over the rate, a picture of a film its own.",
+      "Parts of a place are numbers as well: lights.sun.position_m.x. A key may have \"easing\": linear, "
+      "smooth or "
+      "step, on the way to the next. A frame has the time of its place in the capture over the rate, a "
+      "picture of a film its own.",
       2);
   page.heading("Films (--camera-path)");
   page.row("turntable", "once around the subject in --duration, from the first of --cameras");
@@ -321,8 +332,16 @@ std::string looksText() {
       "\"performances\": [{\"project\": {\"relative\": \"Other.beam\"}, \"scene_from_performance\": "
       "{\"translation_m\": {\"x\": 1}}}], \"look\": {...}}. Its projects lie relative to it; cameras and "
       "times "
-      "are those of PROJECT.",
+      "are those of PROJECT; a performance plays its own frames at its own times. Its rotation is three rows "
+      "of a "
+      "matrix. Meshes (PLY) and the ground are drawn by --renderer reference alone.",
       2);
+  page.heading("Of a performance");
+  fieldRows(fieldsOf(Performance{}), page);
+  page.heading("Of a mesh");
+  fieldRows(fieldsOf(SceneMesh{}), page);
+  page.heading("Of the ground");
+  fieldRows(fieldsOf(Ground{}), page);
   return page.text();
 }
 

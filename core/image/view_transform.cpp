@@ -39,11 +39,9 @@ const std::vector<std::string>& viewTransforms() {
 ViewTransform viewTransformOf(std::string_view name) {
   if (name == viewTransforms()[0]) return standard;
   if (name == viewTransforms()[1]) return neutral;
-  throw Error(
-      Error::Kind::Usage,
-      fmt::format(
-          "the view transform \"{}\" is not drawn: expected one of {}, or raw, which none is applied to",
-          name, fmt::join(viewTransforms(), ", ")));
+  throw Error(Error::Kind::Usage, fmt::format("the view transform \"{}\" is not drawn: expected one of {}, "
+                                              "or raw, which is linear light in OpenEXR",
+                                              name, fmt::join(viewTransforms(), ", ")));
 }
 
 }  // namespace beam

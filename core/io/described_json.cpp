@@ -145,6 +145,14 @@ std::string documentText(const char* format_name, const OrderedJson& members) {
   return document.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
+std::vector<std::string> membersOf(const std::string& place, const std::string& unknown) {
+  std::vector<std::string> paths;
+  const Json members = Json::parse(unknown, nullptr, false);
+  if (!members.is_object()) return paths;
+  for (const auto& member : members.items()) paths.push_back(joined(place, member.key()));
+  return paths;
+}
+
 Json parseDocument(std::string_view text, const char* format_name, std::string_view where) {
   try {
     Json document = Json::parse(text, shallowJson<Json>);

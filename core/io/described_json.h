@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/fields.h"
@@ -64,6 +65,9 @@ class JsonObject {
 // Throws Error{Data}: "<place>: expected <expected>, found <found>"; without a place for the whole document.
 [[noreturn]] void refuseJson(const std::string& place, const std::string& expected,
                              const nlohmann::json& found);
+
+// Paths of the members of an `unknown` of a value at that place.
+std::vector<std::string> membersOf(const std::string& place, const std::string& unknown);
 
 // Sets the member of that path, in objects that are made where they are missing.
 void putMember(nlohmann::ordered_json& object, std::string_view path, nlohmann::ordered_json value);

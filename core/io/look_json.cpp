@@ -113,6 +113,25 @@ Look lookFromValue(Json value, const std::string& place) {
   return look;
 }
 
+std::vector<std::string> unknownMembers(const Look& look) {
+  std::vector<std::string> paths;
+  const auto add = [&](const std::string& place, const std::string& unknown) {
+    for (std::string& path : membersOf(place, unknown)) paths.push_back(std::move(path));
+  };
+  add("", look.unknown);
+  add("environment", look.lighting.environment.unknown);
+  add("background", look.background.unknown);
+  add("camera_path", look.camera_path.unknown);
+  for (const Light& light : look.lighting.lights)
+    if (!std::holds_alternative<UnknownLight>(light.kind)) add("lights." + light.id, light.unknown);
+  for (const auto& [path, curve] : look.curves) {
+    add("curves." + path, curve.unknown);
+    for (std::size_t i = 0; i < curve.keys.size(); ++i)
+      add(fmt::format("curves.{}.keys[{}]", path, i), curve.keys[i].unknown);
+  }
+  return paths;
+}
+
 std::string toJson(const Look& look) { return documentText(kFormat, lookToValue(look)); }
 
 Look parseLook(std::string_view json, std::string_view where) {

@@ -18,6 +18,9 @@ std::string toJson(const Look& look);
 // is not valid or of a newer major format. A look without a name has an empty one.
 Look parseLook(std::string_view json, std::string_view where);
 
+// Paths of its members that this program does not know, "environment.gian": they are kept and have no effect.
+std::vector<std::string> unknownMembers(const Look& look);
+
 // For a document that holds several: an array. Their order is kept.
 std::string looksToJson(const std::vector<Look>& looks);
 // Throws Error{Data} that begins with the place, "looks[1].lights[0]: ...", also for more than kMostLooks, a

@@ -7,6 +7,7 @@
 
 #include "core/base/json_words.h"
 #include "core/io/described_json.h"
+#include "core/io/look_json.h"
 #include "core/io/look_value.h"
 #include "core/scene/described_values.h"
 
@@ -141,6 +142,20 @@ bool isSceneDocument(std::string_view json) {
 
 SceneDocument parseSceneDocument(std::string_view json, std::string_view where) {
   return readDocument(json, kFormat, where, documentFrom);
+}
+
+std::vector<std::string> unknownMembers(const SceneDocument& document) {
+  std::vector<std::string> paths = membersOf("", document.unknown);
+  const auto add = [&](const std::string& place, const std::string& unknown) {
+    for (std::string& path : membersOf(place, unknown)) paths.push_back(std::move(path));
+  };
+  for (std::size_t i = 0; i < document.performances.size(); ++i)
+    add(fmt::format("performances[{}]", i), document.performances[i].unknown);
+  for (std::size_t i = 0; i < document.meshes.size(); ++i)
+    add(fmt::format("meshes[{}]", i), document.meshes[i].unknown);
+  add("ground", document.ground.unknown);
+  for (const std::string& path : unknownMembers(document.look)) paths.push_back("look." + path);
+  return paths;
 }
 
 }  // namespace beam

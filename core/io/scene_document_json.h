@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/scene/scene_document.h"
 
@@ -17,5 +18,8 @@ bool isSceneDocument(std::string_view json);
 // Throws Error{Data} that names `where`, the place in it, what was expected and found; also for a document
 // that is not valid or of a newer major format.
 SceneDocument parseSceneDocument(std::string_view json, std::string_view where);
+
+// As of a look (io/look_json.h), those of the scene's own look among them.
+std::vector<std::string> unknownMembers(const SceneDocument& document);
 
 }  // namespace beam

@@ -27,7 +27,7 @@ std::array<vec2, N> discPoints() {
   return points;
 }
 const std::array<vec2, 16> kSearch = discPoints<16>();
-const std::array<vec2, 24> kFilter = discPoints<24>();
+const std::array<vec2, 16> kFilter = discPoints<16>();
 
 float texelsOf(const ShadowView& view) {  // a metre, or a unit of the tangent
   return 0.5f * static_cast<float>(view.size) / view.half_width;

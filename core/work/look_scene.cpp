@@ -17,6 +17,7 @@
 #include "core/stages/panorama_file.h"
 #include "core/stages/project_sequence.h"
 #include "core/work/last_solved.h"
+#include "core/work/selection.h"
 
 namespace beam {
 namespace {
@@ -72,6 +73,17 @@ std::shared_ptr<const Environment> panoramaOf(const ChosenLook& chosen, const Pr
                                                       : light.file.absolute));
 }
 
+// What a scene refers to.
+fs::path found(const FileReference& reference, const fs::path& folder, const char* what) {
+  if (const std::optional<fs::path> file = resolve(reference, folder)) return *file;
+  throw Error(
+      Error::Kind::Data,
+      fmt::format("a {0} of the scene is gone: expected it at \"{1}\"; put it back, or take the {0} out of "
+                  "the scene",
+                  what,
+                  reference.absolute.empty() ? (folder / reference.relative).string() : reference.absolute));
+}
+
 }  // namespace
 
 ChosenLook chosenLook(const Project& project, const std::string& words) {
@@ -101,62 +113,58 @@ ChosenLook chosenLook(const Project& project, const std::string& words) {
 
 LookScene::LookScene(const ChosenLook& chosen, const Project& project,
                      std::shared_ptr<const GaussianSequence> sequence, const Progress& progress)
-    : chosen_(chosen),
-      setup_(project.sharedSetup()),
+    : look_(chosen.look),
       sequence_(std::make_shared<KeptFrame>(std::move(sequence))),
-      panorama_(panoramaOf(chosen, project, progress)) {}
+      panorama_(panoramaOf(chosen, project, progress)),
+      scene_(chosen.scene) {
+  if (!scene_) return;
+  for (Performance& performance : scene_->performances) {
+    const fs::path folder = found(performance.project, chosen.folder, "project");
+    const LastSolved last =
+        lastSolved(Project::open(folder, project.sharedSetup()),
+                   {.frames = performance.frames, .between = true, .materials = true}, progress);
+    last.tell();
+    auto take = std::make_shared<KeptFrame>(sequenceOf(last.project, Shows::Between));
+    std::vector<std::string> names;
+    for (const FrameIndex frame : selectSolvedFrames(performance.frames, *take, progress))
+      names.push_back(nameOf(*take, frame));
+    performance.frames = fmt::format("{}", fmt::join(names, ","));
+    takes_.push_back(std::move(take));
+  }
+  for (const SceneMesh& mesh : scene_->meshes)
+    meshes_.push_back(std::make_shared<const Mesh>(readMeshPly(found(mesh.file, chosen.folder, "mesh"))));
+}
 
-RenderScene LookScene::at(double time_s, FrameIndex frame, const Progress& progress) {
-  if (chosen_.scene) {
-    return sceneAt(*chosen_.scene, time_s,
-                   {.sequence = [&](const Performance& p) { return takeOf(p, progress); },
-                    .mesh = [&](const SceneMesh& m) { return meshOf(m); },
+RenderScene LookScene::at(double time_s, FrameIndex frame) const {
+  if (scene_) {
+    const auto place = [](const auto& all, const auto& one) {
+      return static_cast<std::size_t>(&one - all.data());
+    };
+    return sceneAt(*scene_, time_s,
+                   {.sequence = [&](const Performance& p) { return takes_[place(scene_->performances, p)]; },
+                    .mesh = [&](const SceneMesh& m) { return OpenedMesh{meshes_[place(scene_->meshes, m)]}; },
                     .environment = [&](const EnvironmentLight&) { return panorama_; }});
   }
   RenderScene scene;
   scene.instances = {instanceOf(solvedFrame(*sequence_, frame), sequence_->renderMode())};
-  scene.lighting = beam::at(chosen_.look, time_s).lighting;
+  scene.lighting = beam::at(look_, time_s).lighting;
   scene.environment = panorama_;
   if (scene.lighting.environment.enabled && !panorama_)
     scene.missing.push_back("panorama of the capture: it is not there");
   return scene;
 }
 
-std::shared_ptr<const GaussianSequence> LookScene::takeOf(const Performance& performance,
-                                                          const Progress& progress) {
-  const std::optional<fs::path> folder = resolve(performance.project, chosen_.folder);
-  if (!folder) return nullptr;
-  auto& take = takes_[*folder];
-  if (!take) {
-    const LastSolved last =
-        lastSolved(Project::open(*folder, setup_),
-                   {.frames = performance.frames, .between = true, .materials = true}, progress);
-    last.tell();
-    take = std::make_shared<KeptFrame>(sequenceOf(last.project, Shows::Between));
-  }
-  return take;
-}
-
-OpenedMesh LookScene::meshOf(const SceneMesh& mesh) {
-  const std::optional<fs::path> file = resolve(mesh.file, chosen_.folder);
-  if (!file) return {};
-  auto& opened = meshes_[*file];
-  if (!opened) opened = std::make_shared<const Mesh>(readMeshPly(*file));
-  return {opened};
-}
-
 void LookScene::requireLight() const {
   if (panorama_) return;
-  const Look& look = chosen_.look;
   RenderScene scene;
-  scene.lighting = look.lighting;
+  scene.lighting = look_.lighting;
   for (Light& light : scene.lighting.lights)  // a curve may switch it on
-    light.enabled |= look.curves.contains("lights." + light.id + ".enabled");
+    light.enabled |= look_.curves.contains("lights." + light.id + ".enabled");
   if (isLit(scene)) return;
   throw Error(Error::Kind::Usage,
               fmt::format("nothing shines in the look \"{}\": it has no lamp that is drawn, and no panorama "
                           "(its own, or that of the project, which {} --environment FILE sets)",
-                          look.name, "beam run"));
+                          look_.name, "beam run"));
 }
 
 }  // namespace beam

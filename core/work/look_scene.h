@@ -4,10 +4,10 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/pipeline/project.h"
@@ -26,33 +26,32 @@ struct ChosenLook {
 // the file's. Throws Error{Usage} where it is neither, and what parseLook and parseSceneDocument throw.
 ChosenLook chosenLook(const Project& project, const std::string& words);
 
-// Keeps a reference to the look.
 class LookScene {
  public:
   // `project`: with the settings that its frames are taken from; of which `sequence` is. Opens the look's
-  // panorama. Throws Error{Data} where that is gone.
+  // panorama, and the projects and meshes of a scene. Throws Error{Data} where one of them is gone, and what
+  // opening them throws.
   LookScene(const ChosenLook& chosen, const Project& project,
             std::shared_ptr<const GaussianSequence> sequence, const Progress& progress);
 
-  // Of the project's take `frame` is seen, which has Gaussians. What of a scene file is gone stands in
-  // RenderScene::missing.
-  RenderScene at(double time_s, FrameIndex frame, const Progress& progress);
+  // Of the project's take `frame` is seen, which has Gaussians; of a scene's performances those of their
+  // frames that have some.
+  RenderScene at(double time_s, FrameIndex frame) const;
   const std::shared_ptr<const Environment>& panorama() const { return panorama_; }
 
   // Throws Error{Usage} where nothing ever shines.
   void requireLight() const;
 
  private:
-  std::shared_ptr<const GaussianSequence> takeOf(const Performance& performance, const Progress& progress);
-  OpenedMesh meshOf(const SceneMesh& mesh);
+  void openScene(const SceneDocument& document, const Progress& progress);
 
-  const ChosenLook& chosen_;
-  std::shared_ptr<const PipelineSetup> setup_;
+  Look look_;
   std::shared_ptr<const GaussianSequence> sequence_;
   std::shared_ptr<const Environment> panorama_;
-  // What was opened, by its path.
-  std::map<std::filesystem::path, std::shared_ptr<const GaussianSequence>> takes_;
-  std::map<std::filesystem::path, std::shared_ptr<const Mesh>> meshes_;
+  std::optional<SceneDocument> scene_;  // whose performances name the frames that are solved
+  // Of its performances and meshes, in their order.
+  std::vector<std::shared_ptr<const GaussianSequence>> takes_;
+  std::vector<std::shared_ptr<const Mesh>> meshes_;
 };
 
 }  // namespace beam

@@ -10,7 +10,9 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/io/look_json.h"
 #include "core/io/movie_file.h"
+#include "core/io/scene_document_json.h"
 #include "core/io/written_by.h"
 #include "core/pipeline/output_target.h"
 #include "core/scene/channel.h"
@@ -61,7 +63,7 @@ class LookWriter {
   // The picture as it was written.
   LookPicture write(const LookShot& shot, Progress& progress) {
     const Look now = at(look_, shot.time_s);
-    const RenderScene scene = scenes_.at(shot.time_s, shot.frame, progress);
+    const RenderScene scene = scenes_.at(shot.time_s, shot.frame);
     requireWhatIsNeeded(channelOf(kRelightChannel), scene, nameOf(sequence_, shot.frame));
     tell(renderer_.load(scene, progress));
     if (lacksVisibility(scene, renderer_.abilities()))
@@ -150,6 +152,9 @@ void forEachShot(const std::vector<LookShot>& shots, bool refines, Progress& pro
 void tellOfLook(const RenderLookRequest& request, bool moves) {
   const Look& look = request.look.look;
   for (const std::string& remark : remarks(look)) logWarning("look \"{}\": {}", look.name, remark);
+  for (const std::string& path :
+       request.look.scene ? unknownMembers(*request.look.scene) : unknownMembers(look))
+    logWarning("look \"{}\": \"{}\" is nothing that this program knows: it has no effect", look.name, path);
   if (!moves && (request.timing.duration_s || request.timing.rate))
     throw Error(Error::Kind::Usage, "--duration and --rate are of a camera that moves: add --camera-path");
 }
@@ -179,7 +184,7 @@ RenderLookOutcome renderLook(const RenderLookRequest& request, SceneRenderer& re
   if (path) {
     film = filmShots(
         *path, request.timing, views.front(), frames, *sequence,
-        [&] { return middleOf(scenes.at(0, frames.front(), progress)); }, outcome.folder, extension);
+        [&] { return middleOf(scenes.at(0, frames.front())); }, outcome.folder, extension);
     outcome.film = filmFile(*path, outcome.folder, extension).string();
   } else {
     film.shots = standingShots(views, frames, *sequence, outcome.folder, extension);

@@ -167,7 +167,7 @@ TEST_F(LookFilm, OfRawIsPicturesAloneAndSaysSo) {
   EXPECT_THAT(warnings.texts, Contains(HasSubstr("no film")));
 }
 
-// The take twice, one of them to the side, and a mesh that is gone.
+// The take twice, one of them to the side; then with what is not there or not known.
 TEST_F(LookFilm, OfASceneShowsItsPerformancesAndNamesWhatIsGone) {
   SceneDocument scene;
   scene.look = sunny("");
@@ -176,21 +176,26 @@ TEST_F(LookFilm, OfASceneShowsItsPerformancesAndNamesWhatIsGone) {
   Performance other = one;
   other.scene_from_performance.translation = {0.6, 0, 0};
   scene.performances = {one, other};
-  scene.meshes.push_back({.file = {"gone.ply", ""}});
   std::ofstream(folder_ / "two.json") << toJson(scene);
   RenderLookRequest request = asked(sunny("one"));
   request.frames = "0";
   render(request);
   request.look = chosenLook(solved(), (folder_ / "two.json").string());
-  const Warnings warnings;
   EXPECT_EQ(render(request).folder, "look_two");
-  EXPECT_THAT(warnings.texts, Contains(HasSubstr("gone.ply")));
   const auto covered = [&](const char* file) {
     const auto alpha = readAlpha(folder_ / file);
     return std::count_if(alpha.pixels.begin(), alpha.pixels.end(), [](std::uint8_t a) { return a > 127; });
   };
   EXPECT_GT(covered("out/look_two/cam0/000000.png"),
             1.3 * static_cast<double>(covered("out/look_one/cam0/000000.png")));
+  request.look.scene->meshes.push_back({.file = {"gone.ply", ""}});
+  EXPECT_THAT(messageOf(Error::Kind::Data, [&] { render(request); }), HasSubstr("gone.ply"));
+  request.look.scene->meshes.clear();
+  request.look.scene->ground.unknown = R"({"colour": 3})";
+  request.force = true;
+  const Warnings warnings;
+  render(request);
+  EXPECT_THAT(warnings.texts, Contains(HasSubstr("ground.colour")));
 }
 
 }  // namespace
