@@ -44,4 +44,13 @@ CameraTrack parseCameraTrack(std::string_view json, std::string_view where) {
   return readDocument(json, kFormat, where, trackFrom);
 }
 
+std::vector<std::string> unknownMembers(const CameraTrack& track) {
+  std::vector<std::string> paths = membersOf("", track.unknown);
+  for (std::size_t i = 0; i < track.keys.size(); ++i) {
+    for (std::string& path : membersOf(fmt::format("keys[{}]", i), track.keys[i].unknown))
+      paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
 }  // namespace beam

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/scene/camera_track.h"
 
@@ -15,5 +16,7 @@ std::string toJson(const CameraTrack& track);
 // Throws Error{Data} that names `where`, the place in it, what was expected and found; also for a track that
 // is not valid or of a newer major format.
 CameraTrack parseCameraTrack(std::string_view json, std::string_view where);
+// As of a look (io/look_json.h).
+std::vector<std::string> unknownMembers(const CameraTrack& track);
 
 }  // namespace beam

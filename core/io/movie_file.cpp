@@ -113,17 +113,19 @@ void padToEven(const Image<u8vec3>& picture, std::vector<u8vec3>& padded) {
 bool canWriteMovies() { return installedProgram("ffmpeg").has_value(); }
 
 struct MovieWriter::State {
-  State(const std::filesystem::path& path, ivec2 pixels, double rate, const FileNotes& notes)
+  State(const std::filesystem::path& path, ivec2 pixels, double rate, const FileNotes& said)
       : file(path),
         size(pixels),
+        notes(said),
         output(path),
-        ffmpeg(ffmpegWords(output.name(), evenSize(size), rate, notes)) {}
+        ffmpeg(ffmpegWords(output.name(), evenSize(size), rate, said)) {}
 
   // Waits for ffmpeg's end.
   [[noreturn]] void refuse(const Progress* progress) {
     const int code = ffmpeg.finish(progress);
     std::string said = lastWords(ffmpeg.errorText());
-    if (said.empty() && code > 128) said = ::strsignal(code - 128);
+    std::replace(said.begin(), said.end(), '\0', '?');
+    if (said.empty()) said = code > 128 ? ::strsignal(code - 128) : "without a movie, and without a word";
     throw Error(
         Error::Kind::Storage,
         fmt::format("cannot write the movie \"{}\": ffmpeg ended with {}: {}; expected an ffmpeg that "
@@ -133,6 +135,7 @@ struct MovieWriter::State {
 
   std::filesystem::path file;
   ivec2 size;
+  FileNotes notes;
   UnpublishedFile output;
   ChildProcess ffmpeg;
   std::vector<u8vec3> padded;
@@ -172,6 +175,9 @@ void MovieWriter::finish(const Progress* progress) {
     throw Error(Error::Kind::Bug, "a movie is finished once, with a picture");
   State& s = *state_;
   if (s.ffmpeg.finish(progress) != 0) s.refuse(progress);
+  // A program of that name may be something else.
+  if (std::filesystem::file_size(s.output.name()) == 0 || notesOfMovie(s.output.name()) != s.notes)
+    s.refuse(progress);
   s.output.publish();
   state_.reset();
 }

@@ -14,7 +14,7 @@
 namespace beam {
 namespace {
 
-constexpr double kNarrowest_deg = 0.1, kWidest_deg = 170;
+constexpr double kNarrowest_deg = 0.1, kWidest_deg = 170, kMostTurns_deg = 36'000, kFarthest_m = 1e9;
 
 // Position, target, roll, field of view.
 using Numbers = std::array<double, 8>;
@@ -22,6 +22,10 @@ using Numbers = std::array<double, 8>;
 Numbers numbersOf(const CameraKey& k) {
   const dvec3 &p = k.position_m, &t = k.target_m;
   return {p.x, p.y, p.z, t.x, t.y, t.z, k.roll_deg, k.fov_deg};
+}
+
+bool isCurveEasing(const std::string& easing) {
+  return easing == "linear" || easing == "smooth" || easing == "step";
 }
 
 // Of the cubic through key i, per second: the chord of its neighbours; at an end that of the end.
@@ -45,7 +49,7 @@ Numbers between(const std::vector<CameraKey>& keys, std::size_t i, double time_s
   const double seconds = next.time_s - key.time_s, u = (time_s - key.time_s) / seconds;
   const Numbers a = numbersOf(key), b = numbersOf(next);
   Numbers out;
-  if (key.easing == "linear" || key.easing == "smooth" || key.easing == "step") {
+  if (isCurveEasing(key.easing)) {
     const double share = shareOf(key.easing, u);
     for (std::size_t n = 0; n < out.size(); ++n) out[n] = std::lerp(a[n], b[n], share);
     return out;
@@ -77,6 +81,8 @@ void describe(Fields& f, CameraKey& key) {
   f.field({.name = "roll_deg",
            .label = "Roll",
            .help = "Counter-clockwise, seen from behind the camera.",
+           .min = -kMostTurns_deg,
+           .max = kMostTurns_deg,
            .unit = "degrees"},
           key.roll_deg);
   f.field({.name = "fov_deg",
@@ -105,6 +111,10 @@ void validate(const CameraTrack& track) {
     } catch (const Error& e) {
       throw Error(e.kind(), fmt::format("keys[{}]: {}", i, e.what()));
     }
+    const auto far_away = [](const dvec3& x_m) { return !(glm::length(x_m) <= kFarthest_m); };
+    if (far_away(keys[i].position_m) || far_away(keys[i].target_m))
+      throw Error(Error::Kind::Data,
+                  fmt::format("keys[{}]: expected places up to {} m away", i, kFarthest_m));
     if (keys[i].position_m == keys[i].target_m)
       throw Error(Error::Kind::Data,
                   fmt::format("keys[{}]: expected a target away from the position, found the same", i));
@@ -113,6 +123,17 @@ void validate(const CameraTrack& track) {
                                                  keys[i - 1].time_s, keys[i].time_s));
     }
   }
+}
+
+std::vector<std::string> remarks(const CameraTrack& track) {
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < track.keys.size(); ++i) {
+    const std::string& easing = track.keys[i].easing;
+    if (easing != "spline" && !isCurveEasing(easing))
+      found.push_back(fmt::format("keys[{}].easing is \"{}\", which this program does not know: spline holds",
+                                  i, easing));
+  }
+  return found;
 }
 
 Camera cameraAt(const CameraTrack& track, double time_s, ivec2 size) {

@@ -38,6 +38,9 @@ struct CameraTrack {
 // ascend, a target at the position. An easing that this program does not know is none: it counts as spline.
 void validate(const CameraTrack& track);
 
+// A sentence of each easing that this program does not know.
+std::vector<std::string> remarks(const CameraTrack& track);
+
 // A pinhole of square pixels with its principal point in the middle. Of a valid track; before its first key
 // and after its last these hold.
 Camera cameraAt(const CameraTrack& track, double time_s, ivec2 size);

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file_reference.h"
+#include "core/base/log.h"
 #include "core/io/camera_track_json.h"
 #include "core/io/file.h"
 
@@ -23,6 +24,9 @@ constexpr double kFrameTolerance = 1e-6;  // of a frame: times are often n / rat
 
 ChosenPath pathIn(const fs::path& file) {
   ChosenPath path{file.stem().string(), parseCameraTrack(readTextFile(file), file.string())};
+  for (const std::string& remark : remarks(*path.track)) logWarning("\"{}\": {}", file.string(), remark);
+  for (const std::string& unknown : unknownMembers(*path.track))
+    logWarning("\"{}\": \"{}\" is nothing that this program knows: it has no effect", file.string(), unknown);
   if (!isLookName(path.name))
     throw Error(Error::Kind::Data, fmt::format("\"{}\": \"{}\" is no name of a folder; rename the file",
                                                file.string(), path.name));
@@ -90,7 +94,8 @@ Film filmShots(const ChosenPath& path, const FilmTiming& timing, const View& fir
                const std::function<dvec3()>& middle, const std::string& folder, std::string_view extension) {
   Film film{.rate = requirePositive(timing.rate.value_or(frames.size() > 1 ? sequence.rate() : kLoneRate),
                                     "--rate")};
-  const double keyed_s = path.track ? path.track->keys.back().time_s : kTurn_s;
+  const double last_s = path.track ? path.track->keys.back().time_s : 0;
+  const double keyed_s = last_s > 0 ? last_s : kTurn_s;
   const double duration_s = requirePositive(timing.duration_s.value_or(keyed_s), "--duration");
   const double count = std::max(1.0, std::round(duration_s * film.rate));
   if (count > kMostFilmPictures) {

@@ -38,7 +38,7 @@ std::optional<ChosenPath> chosenPath(const std::string& words, const Look& look,
 inline constexpr int kMostFilmPictures = 100'000;
 
 struct FilmTiming {
-  std::optional<double> duration_s = {};  // none: that of the keys; of a turntable 10 s
+  std::optional<double> duration_s = {};  // none: that of the keys; of a turntable and a lone key 10 s
   std::optional<double> rate = {};        // pictures a second; none: that of the take, of a lone frame 30
 };
 

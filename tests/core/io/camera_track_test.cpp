@@ -92,6 +92,9 @@ TEST(CameraTrack, ComesBackFromItsFile) {
   track.keys[1].unknown = R"({"lens":"anamorphic"})";
   track.keys[2].easing = "orbit";  // of a later version
   EXPECT_EQ(parseCameraTrack(toJson(track), "path.json"), track);
+  EXPECT_EQ(unknownMembers(track), std::vector<std::string>{"keys[1].lens"});
+  ASSERT_EQ(remarks(track).size(), 1u);
+  EXPECT_NE(remarks(track)[0].find("keys[2].easing is \"orbit\""), std::string::npos);
 }
 
 std::string complaintOf(const std::string& json) {
@@ -114,6 +117,8 @@ TEST(CameraTrack, ThatIsNoneIsRefusedByPlace) {
   EXPECT_PRED2(has, complaintOf(head + R"("keys": [{"fov_deg": 180}]})"), "keys[0]: fov_deg");
   EXPECT_PRED2(has, complaintOf(head + R"("keys": [{"position_m": {"x": 0, "y": 1, "z": 0}}]})"), "target");
   EXPECT_PRED2(has, complaintOf(head + R"("keys": [{"position_m": 3}]})"), "position_m");
+  EXPECT_PRED2(has, complaintOf(head + R"("keys": [{"position_m": {"x": 1e300}}]})"), "places up to");
+  EXPECT_PRED2(has, complaintOf(head + R"("keys": [{"roll_deg": 1e308}]})"), "roll_deg");
   EXPECT_PRED2(has, complaintOf(R"({"format": {"name": "beam-look", "major": 1, "minor": 0}})"),
                "beam-camera-path");
   EXPECT_PRED2(has, complaintOf("[1"), "path.json");

@@ -378,5 +378,18 @@ TEST(MovieWithoutFfmpeg, OneThatFailsAtTheEndPublishesNothing) {
   EXPECT_FALSE(fs::exists(dir / "m.mp4"));
 }
 
+// It takes all pictures and ends well, and what it leaves is no movie.
+TEST(MovieWithoutFfmpeg, OneThatIsSomethingElseIsFoundOut) {
+  for (const char* does : {"/bin/cat >/dev/null", "for last; do :; done; /bin/cat > \"${last#file:}\""}) {
+    const TempDir dir, programs;
+    writeFfmpeg(programs, does);
+    const SearchPath path(programs.path().string());
+    MovieWriter movie(dir / "m.mp4", ivec2(64, 48), 30, {{"Software", "BEAM Studio, beam render"}});
+    movie.add(ramp(64, 48));
+    EXPECT_THAT(messageOf(Error::Kind::Storage, [&] { movie.finish(); }), HasSubstr("without a movie"));
+    EXPECT_FALSE(fs::exists(dir / "m.mp4"));
+  }
+}
+
 }  // namespace
 }  // namespace beam::testing

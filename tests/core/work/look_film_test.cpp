@@ -150,6 +150,10 @@ TEST_F(LookFilm, RefusesWhatHasNoEndAndWhatIsNotThere) {
   EXPECT_THAT(refusal(request), HasSubstr("--duration"));
   request.timing = {.rate = 0};
   EXPECT_THAT(refusal(request), HasSubstr("--rate"));
+  std::ofstream(folder_ / "still.json")
+      << R"({"format": {"name": "beam-camera-path", "major": 1, "minor": 0}, "keys": [{"time_s": 0}]})";
+  request.camera_path = (folder_ / "still.json").string();
+  EXPECT_THAT(refusal(request), HasSubstr("--rate")) << "a lone key stands: its time is no fault";
   request.camera_path = "nowhere.json";
   EXPECT_THAT(refusal(request), HasSubstr("nowhere.json"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
