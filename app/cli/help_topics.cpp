@@ -288,6 +288,7 @@ std::string looksText() {
       "{\"gain\": 0.3}, \"lights\": [{\"id\": \"sun\", \"kind\": \"directional\", \"azimuth_deg\": 60, "
       "\"elevation_deg\": 40}]}",
       2);
+  page.blank();
   page.paragraph(
       "A dot in a name stands for an object inside: {\"environment\": {\"file\": {\"relative\": "
       "\"sunset.exr\"}}}. Files are named relative to the look's own file, or absolutely: one of the two is "

@@ -118,6 +118,8 @@ LookScene::LookScene(const ChosenLook& chosen, const Project& project,
       panorama_(panoramaOf(chosen, project, progress)),
       scene_(chosen.scene) {
   if (!scene_) return;
+  if (scene_->performances.empty() && scene_->meshes.empty() && !scene_->ground.enabled)
+    throw Error(Error::Kind::Data, "the scene is empty: expected performances, meshes or a ground in it");
   for (Performance& performance : scene_->performances) {
     const fs::path folder = found(performance.project, chosen.folder, "project");
     const LastSolved last =

@@ -192,6 +192,9 @@ TEST_F(LookFilm, OfASceneShowsItsPerformancesAndNamesWhatIsGone) {
   };
   EXPECT_GT(covered("out/look_two/cam0/000000.png"),
             1.3 * static_cast<double>(covered("out/look_one/cam0/000000.png")));
+  RenderLookRequest empty = request;
+  empty.look.scene->performances.clear();
+  EXPECT_THAT(messageOf(Error::Kind::Data, [&] { render(empty); }), HasSubstr("the scene is empty"));
   request.look.scene->meshes.push_back({.file = {"gone.ply", ""}});
   EXPECT_THAT(messageOf(Error::Kind::Data, [&] { render(request); }), HasSubstr("gone.ply"));
   request.look.scene->meshes.clear();
