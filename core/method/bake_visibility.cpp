@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kVotePixels = 320'000;  // of a picture that votes; more would tell no more
 constexpr float kNear_m = 0.03f;         // between a Gaussian's reach and the surface that it is part of
+constexpr std::size_t kSightPieces = 2;  // each reads all weights: more would read more than they save
 constexpr std::size_t kPiece = 32;       // Gaussians whose rays are traced together
 constexpr std::size_t kBand = 8192;      // Gaussians between two looks at the progress
 constexpr double kToMean = 1e-3;  // pull of the SH beyond the mean to 0, against 1/N sum of (n.w) Y Y^T
@@ -85,8 +86,10 @@ struct Sight {
   dvec3 from_middle = dvec3(0);  // weight x (surface - middle)
 };
 
+// Of the Gaussians [begin, end), pixel after pixel.
 void addSights(const GaussianCloud& cloud, std::span<const vec3> axes, const Camera& camera,
-               const RasterImages& images, const BlendWeights& blend, std::vector<Sight>& sights) {
+               const RasterImages& images, const BlendWeights& blend, std::size_t begin, std::size_t end,
+               std::vector<Sight>& sights) {
   const Rigid3 world_from_camera = inverse(camera.camera_from_world);
   const vec3 eye(world_from_camera.translation_m);
   for (std::size_t p = 0; p + 1 < blend.first.size(); ++p) {
@@ -96,6 +99,7 @@ void addSights(const GaussianCloud& cloud, std::span<const vec3> axes, const Cam
     const vec3 surface(world_from_camera * (depth * rayOf(camera.intrinsics, {x + 0.5, y + 0.5})));
     for (std::size_t e = blend.first[p]; e < blend.first[p + 1]; ++e) {
       const std::size_t i = blend.gaussian[e];
+      if (i < begin || i >= end) continue;
       const float weight = blend.weight[e];
       sights[i].side += glm::dot(axes[i], eye - cloud.position_m[i]) < 0 ? -weight : weight;
       const vec3 s = cloud.scale_m[i], away = surface - cloud.position_m[i];
@@ -159,7 +163,12 @@ SeenSurface seenSurface(const GaussianCloud& cloud, std::span<const Camera> came
     Rasterizer& rasterizer =
         rasterizers.of({.width = camera.width, .height = camera.height, .color = false, .geometry = true});
     rasterizer.forward(buffers, camera, 0, vec3(0), images);
-    addSights(cloud, axes, camera, images, rasterizer.blendWeights(buffers, camera), sights);
+    const BlendWeights blend = rasterizer.blendWeights(buffers, camera);
+    // Each piece reads all weights and adds up its own: in one order, whoever does it.
+    parallelFor(cloud.size(), (cloud.size() + kSightPieces - 1) / kSightPieces,
+                [&](std::size_t begin, std::size_t end) {
+                  addSights(cloud, axes, camera, images, blend, begin, end, sights);
+                });
     progress.step();
   }
   const vec3 center = centerOf(cloud);
