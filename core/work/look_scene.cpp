@@ -17,6 +17,7 @@
 #include "core/stages/panorama_file.h"
 #include "core/stages/project_sequence.h"
 #include "core/work/last_solved.h"
+#include "core/work/referred_file.h"
 #include "core/work/selection.h"
 
 namespace beam {
@@ -63,25 +64,16 @@ std::shared_ptr<const Environment> panoramaOf(const ChosenLook& chosen, const Pr
     const std::optional<fs::path> file = project.environmentFile();
     return file ? openPanorama(*file, progress) : nullptr;
   }
-  const std::optional<fs::path> file = resolve(light.file, chosen.folder);
-  if (file) return openPanorama(*file, progress);
-  throw Error(Error::Kind::Data,
-              fmt::format("the panorama of the look \"{}\" is gone: expected it at \"{}\"; put it back, "
-                          "or name another in the look",
-                          chosen.look.name,
-                          light.file.absolute.empty() ? (chosen.folder / light.file.relative).string()
-                                                      : light.file.absolute));
+  return openPanorama(referredFile(light.file, chosen.folder,
+                                   fmt::format("the panorama of the look \"{}\"", chosen.look.name),
+                                   "name another in the look"),
+                      progress);
 }
 
 // What a scene refers to.
 fs::path found(const FileReference& reference, const fs::path& folder, const char* what) {
-  if (const std::optional<fs::path> file = resolve(reference, folder)) return *file;
-  throw Error(
-      Error::Kind::Data,
-      fmt::format("a {0} of the scene is gone: expected it at \"{1}\"; put it back, or take the {0} out of "
-                  "the scene",
-                  what,
-                  reference.absolute.empty() ? (folder / reference.relative).string() : reference.absolute));
+  return referredFile(reference, folder, fmt::format("a {} of the scene", what),
+                      fmt::format("take the {} out of the scene", what));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "core/base/log.h"
 #include "core/io/camera_track_json.h"
 #include "core/io/file.h"
+#include "core/work/referred_file.h"
 
 namespace beam {
 namespace {
@@ -36,16 +37,8 @@ ChosenPath pathIn(const fs::path& file) {
 std::optional<ChosenPath> ownPath(const CameraPath& path, const fs::path& folder) {
   if (path.kind == kTurntable) return ChosenPath{kTurntable, {}};
   if (path.kind != "file") return {};
-  const std::optional<fs::path> file = resolve(path.file, folder);
-  if (!file) {
-    throw Error(
-        Error::Kind::Data,
-        fmt::format(
-            "the look's camera path is gone: expected it at \"{}\"; put it back, or leave it out "
-            "with --camera-path none",
-            path.file.absolute.empty() ? (folder / path.file.relative).string() : path.file.absolute));
-  }
-  return pathIn(*file);
+  return pathIn(
+      referredFile(path.file, folder, "the look's camera path", "leave it out with --camera-path none"));
 }
 
 double requirePositive(double value, const char* what) {
